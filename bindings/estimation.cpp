@@ -1,0 +1,78 @@
+// Problems and fits. The records come as numpy arrays; Ceres runs without Python's lock.
+#include <pybind11/eigen.h>
+
+#include "bind.hpp"
+#include "estimation/cylinder.hpp"
+#include "estimation/fit.hpp"
+
+namespace sms_python {
+namespace {
+
+namespace est = sms::estimation;
+
+est::CylinderRecord make_cylinder_record(Eigen::VectorXd extension, Eigen::VectorXd velocity,
+                                         Eigen::VectorXd acceleration, Eigen::VectorXd pressure_lower,
+                                         Eigen::VectorXd rod_force, Eigen::VectorXd pressure_upper, bool gauge_lower,
+                                         bool gauge_upper) {
+  return {std::move(extension),      std::move(velocity),  std::move(acceleration), std::move(pressure_lower),
+          std::move(pressure_upper), std::move(rod_force), gauge_lower,             gauge_upper};
+}
+
+using NamedBounds = std::tuple<std::string, double, double>;
+
+est::Fit fit(const est::Problem& problem, const Params& start, const std::vector<NamedBounds>& free,
+             const Eigen::VectorXd& weight, int max_iterations) {
+  std::vector<est::FreeParam> bounds;
+  for (const NamedBounds& f : free) {
+    bounds.push_back({param_index(std::get<0>(f)), std::get<1>(f), std::get<2>(f)});
+  }
+  est::FitOptions options;
+  options.max_iterations = max_iterations;
+  py::gil_scoped_release unlocked;
+  return est::fit(problem, start, bounds, weight, options);
+}
+
+std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const est::Problem& problem, const Params& params,
+                                                    const std::vector<std::string>& names) {
+  std::vector<int> free;
+  for (const std::string& name : names) {
+    free.push_back(param_index(name));
+  }
+  Eigen::VectorXd residual;
+  est::RowMatrix jacobian;
+  problem.evaluate(params, free, &residual, &jacobian);
+  return {residual, jacobian};
+}
+
+}  // namespace
+
+void bind_estimation(py::module_& m) {
+  py::class_<est::CylinderRecord>(m, "CylinderRecord",
+                                  "The compared samples of one record of the rig 'cylinder', as read; arrays (n,), SI.")
+      .def(py::init(&make_cylinder_record), py::kw_only(), py::arg("extension"), py::arg("velocity"),
+           py::arg("acceleration"), py::arg("pressure_lower"), py::arg("rod_force"),
+           py::arg("pressure_upper") = Eigen::VectorXd(), py::arg("gauge_lower") = false,
+           py::arg("gauge_upper") = false);
+
+  py::class_<est::Problem>(m, "Problem", "A model held against measured records.")
+      .def_property_readonly("rows", &est::Problem::rows)
+      .def("evaluate", &evaluate, py::arg("params"), py::arg("free") = std::vector<std::string>(),
+           "(residual (rows,), jacobian (rows, free)): predicted minus measured, and its exact derivatives.");
+  py::class_<est::CylinderProblem, est::Problem>(m, "CylinderProblem")
+      .def(py::init<std::vector<est::CylinderRecord>>(), py::arg("records"));
+
+  py::class_<est::Fit>(m, "Fit", "The result of a least-squares fit.")
+      .def_readonly("params", &est::Fit::params)
+      .def_readonly("residual", &est::Fit::residual, "(rows,), predicted minus measured at params, not weighted")
+      .def_readonly("jacobian", &est::Fit::jacobian, "(rows, free), not weighted")
+      .def_readonly("at_bound", &est::Fit::at_bound)
+      .def_readonly("cost", &est::Fit::cost, "sum of the squared weighted residuals")
+      .def_readonly("iterations", &est::Fit::iterations)
+      .def_readonly("converged", &est::Fit::converged)
+      .def_readonly("message", &est::Fit::message);
+  m.def("fit", &fit, py::arg("problem"), py::arg("start"), py::arg("free"), py::arg("weight") = Eigen::VectorXd(),
+        py::arg("max_iterations") = 100,
+        "Least squares over the parameters free = [(name, lower, upper), ...]; ValueError for a bad start.");
+}
+
+}  // namespace sms_python

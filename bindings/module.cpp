@@ -1,0 +1,16 @@
+#include "bind.hpp"
+
+PYBIND11_MODULE(_core, m) {
+  m.doc() = "The C++ core of sms: parameters, equations, estimation. Use it through the package sms.";
+  m.attr("__version__") = sms_version();
+  m.attr("build_info") = sms_build_info();
+  sms_python::bind_status(m);
+  sms_python::bind_params(m);
+  sms_python::bind_cylinder(m);
+#ifdef SMS_WITH_ESTIMATION
+  sms_python::bind_estimation(m);
+  m.attr("has_estimation") = true;
+#else
+  m.attr("has_estimation") = false;
+#endif
+}

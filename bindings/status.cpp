@@ -1,0 +1,44 @@
+// One Python exception per status of the C ABI, all of them ValueErrors.
+#include "bind.hpp"
+
+namespace sms_python {
+namespace {
+
+struct StatusException {
+  sms_status status;
+  const char* name;
+  PyObject* type;
+};
+
+StatusException exceptions[] = {
+    {SMS_NOT_A_NUMBER, "NotANumberError", nullptr},
+    {SMS_OUT_OF_RANGE, "OutOfRangeError", nullptr},
+    {SMS_OUT_OF_WORKSPACE, "OutOfWorkspaceError", nullptr},
+    {SMS_NOT_CONVERGED, "NotConvergedError", nullptr},
+};
+
+}  // namespace
+
+void bind_status(py::module_& m) {
+  const auto add = [&m](const char* name, const std::string& doc, PyObject* base) {
+    PyObject* type = PyErr_NewExceptionWithDoc((std::string("sms._core.") + name).c_str(), doc.c_str(), base, nullptr);
+    m.add_object(name, py::reinterpret_borrow<py::object>(type));
+    return type;
+  };
+  PyObject* base = add("StatusError", "A call into the core failed; nothing was changed.", PyExc_ValueError);
+  for (StatusException& e : exceptions) {
+    e.type = add(e.name, std::string("Raised when ") + sms_status_string(e.status) + ".", base);
+  }
+}
+
+void raise_status(sms_status status, const std::string& message) {
+  for (const StatusException& e : exceptions) {
+    if (e.status == status) {
+      PyErr_SetString(e.type, message.c_str());
+      throw py::error_already_set();
+    }
+  }
+  throw std::runtime_error(message);
+}
+
+}  // namespace sms_python

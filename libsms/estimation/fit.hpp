@@ -1,0 +1,44 @@
+// Least squares: the parameters with which a model comes closest to its records.
+//
+//   minimise  sum_i (w_i r_i(theta))^2   subject to  lower <= theta <= upper
+//
+// solved by Ceres (Levenberg-Marquardt, projected on the bounds) with the problem's exact derivatives. A parameter that
+// is known within a declared uncertainty is given that box; one that is unknown gets the bounds of params.def.
+#pragma once
+
+#include <string>
+
+#include "estimation/problem.hpp"
+
+namespace sms {
+namespace estimation {
+
+struct FreeParam {
+  int index;  // ParamIndex
+  double lower;
+  double upper;
+};
+
+struct FitOptions {
+  int max_iterations = 100;
+  double tolerance = 1e-12;  // relative, on cost and on parameters
+};
+
+struct Fit {
+  Params<double> params;
+  Eigen::VectorXd residual;  // at params, not weighted
+  RowMatrix jacobian;        // at params, rows x free, not weighted
+  std::vector<bool> at_bound;
+  double cost = 0.0;  // sum of (w r)^2
+  int iterations = 0;
+  bool converged = false;
+  std::string message;
+};
+
+// weight (rows), or empty: all one. std::invalid_argument for a start outside the bounds, a wrong length of weight, or
+// a residual that is not finite at the start.
+Fit fit(const Problem& problem, const Params<double>& start, const std::vector<FreeParam>& free,
+        const Eigen::VectorXd& weight, const FitOptions& options = FitOptions());
+
+}  // namespace estimation
+}  // namespace sms

@@ -1,0 +1,46 @@
+// Exact derivatives of a model that is written over the scalar: it runs in ceres::Jet, a few parameters at a time.
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+
+#include "estimation/problem.hpp"
+
+namespace sms {
+namespace estimation {
+
+// model(params, residual) writes `rows` residuals for Params<double>, and for Params<Jet> alike.
+template <typename Model>
+void evaluate_with_jets(const Model& model, int rows, const Params<double>& params, const std::vector<int>& free,
+                        Eigen::VectorXd* residual, RowMatrix* jacobian) {
+  constexpr int kWidth = 4;  // one AVX register of derivatives: as fast as any wider choice here
+  using Jet = ceres::Jet<double, kWidth>;
+
+  residual->resize(rows);
+  if (jacobian == nullptr) {
+    model(params, residual->data());
+    return;
+  }
+  const int columns = static_cast<int>(free.size());
+  jacobian->resize(rows, columns);
+  std::vector<Jet> jets(static_cast<std::size_t>(rows));
+  for (int first = 0; first < std::max(columns, 1); first += kWidth) {
+    const int width = std::min(kWidth, columns - first);
+    Params<Jet> seeded = cast<Jet>(params);
+    for (int k = 0; k < width; ++k) {
+      param(seeded, free[static_cast<std::size_t>(first + k)]).v[k] = 1.0;
+    }
+    model(seeded, jets.data());
+    for (int row = 0; row < rows; ++row) {
+      const Jet& jet = jets[static_cast<std::size_t>(row)];
+      (*residual)(row) = jet.a;
+      for (int k = 0; k < width; ++k) {
+        (*jacobian)(row, first + k) = jet.v[k];
+      }
+    }
+  }
+}
+
+}  // namespace estimation
+}  // namespace sms

@@ -1,0 +1,115 @@
+// Friction of the pneumatic cylinder (dissertation, chapter 6).
+//
+// Two lips and a bearing rub on the bore. Pushed slowly the seal sticks; once it slides, friction falls from the static
+// force F_S to the Coulomb force F_C and then grows with speed. On this cylinder the measured fall depended on how fast
+// the piston was speeding up, and did not show while it slowed down; hence, with v the velocity, a the acceleration,
+//
+//   F = alpha { sgn(v) [ F_C + (F_S - F_C) exp(-|v / (a zeta v_S)|^delta) + F_UE (exp(gamma |v|) - 1) ] + sigma v }
+//
+//                                                                                            (eq. 6.5, 6.6)
+// where the Stribeck term is present only while speeding up (sgn a = sgn v), F_C and sigma may differ between speeding
+// up and slowing down, and alpha leads the force through zero inside |v| < eps:
+//
+//   alpha = sin(pi |v| / (2 eps))   for |v| < eps,   1 beyond                               (eq. 6.7)
+//
+// Valid for sliding. Inside eps a loaded piston creeps instead of sticking; true stiction needs a pre-sliding model.
+// Limits: at a = 0 the Stribeck velocity |a| zeta v_S is zero and so is the term; at v = 0 the force is zero with slope
+// (pi / (2 eps)) [F_C2], which the sine carries exactly, derivatives included.
+//
+// Three effects, absent until data switches them on (their parameters are zero):
+//   pressure_dependent_friction   the lips are pressed on the bore by the chamber pressures
+//   direction_dependent_friction  a lip seal rubs more one way than the other
+//   position_dependent_friction   the bore is not equally wide, the rod not quite straight
+#pragma once
+
+#include <cmath>
+
+#include "sms/params.hpp"
+
+namespace sms {
+
+// What the seals of one cylinder feel.
+template <typename S>
+struct Piston {
+  S extension;       // x, m, 0 retracted
+  S velocity;        // v, m/s, positive while extending
+  S acceleration;    // a, m/s^2
+  S pressure_lower;  // p_a, Pa absolute: extends the rod
+  S pressure_upper;  // p_b, Pa absolute; ambient for a single-acting cylinder
+};
+
+// sgn(v) alpha of eq. 6.7: an odd function, from -1 to 1, smooth through v = 0.
+template <typename S>
+S friction_ramp(const S& velocity, const S& stiction_velocity) {
+  using std::abs;
+  using std::sin;
+  if (abs(velocity) < stiction_velocity) {
+    return sin(S(1.5707963267948966) * velocity / stiction_velocity);
+  }
+  return velocity < S(0) ? S(-1) : S(1);
+}
+
+// exp(-|v / width|^delta), the fall from static to Coulomb friction. Zero for width -> 0, derivatives included: with
+// delta >= 0.5 (its bound) the term underflows long before |v| reaches a million widths, where it is cut.
+template <typename S>
+S stribeck_fall(const S& velocity, const S& width, const S& exponent) {
+  using std::abs;
+  using std::exp;
+  using std::pow;
+  const S speed = abs(velocity);
+  if (!(speed < S(1e6) * width)) {
+    return S(0);
+  }
+  if (!(speed > S(0))) {
+    return S(1);
+  }
+  return exp(-pow(speed / width, exponent));
+}
+
+// F_UE (exp(gamma |v|) - 1), eq. 6.6; the exponent is held at 50, far beyond any speed of a cylinder, to stay finite.
+template <typename S>
+S exponential_friction(const Params<S>& p, const S& velocity) {
+  using std::abs;
+  using std::exp;
+  const S growth = p.exponential_friction_rate * abs(velocity);
+  return p.exponential_friction_force * (exp(growth < S(50) ? growth : S(50)) - S(1));
+}
+
+// Friction force, N, positive against extension: eq. 6.5 to 6.7 with the effects on friction.
+template <typename S>
+S friction(const Params<S>& p, const Piston<S>& piston) {
+  using std::abs;
+  const S& v = piston.velocity;
+  const S& a = piston.acceleration;
+  const S ramp = friction_ramp(v, p.stiction_velocity);
+  const bool speeding_up = (v > S(0) && a > S(0)) || (v < S(0) && a < S(0));
+
+  S coulomb = p.coulomb_force;
+  S slope = p.viscous_friction;
+  S stribeck = S(0);
+  if (speeding_up) {
+    const S width = abs(a) * p.stribeck_acceleration_factor * p.stribeck_velocity;
+    stribeck = (p.stiction_force - p.coulomb_force) * stribeck_fall(v, width, p.stribeck_exponent);
+  } else {
+    coulomb += p.coulomb_force_deceleration_change;
+    slope += p.viscous_friction_deceleration_change;
+  }
+
+  const S beyond_mid_stroke = piston.extension - S(0.5) * p.stroke;
+  const S pressing = piston.pressure_lower + piston.pressure_upper - S(2) * p.ambient_pressure;
+  const S seal = (coulomb + stribeck) * (S(1) + p.position_friction * beyond_mid_stroke) +
+                 p.pressure_friction * pressing + exponential_friction(p, v);
+  return ramp * seal + abs(ramp) * (slope * v + p.direction_friction);
+}
+
+// The simple friction law, eq. 4.33: static and Coulomb force, one slope, no dependence on acceleration. It jumps at
+// v = 0, where it is zero by sgn(0) = 0.
+template <typename S>
+S friction_stribeck(const Params<S>& p, const S& velocity) {
+  const S fall = stribeck_fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
+  const S dry = p.coulomb_force + (p.stiction_force - p.coulomb_force) * fall;
+  const S sign = velocity > S(0) ? S(1) : (velocity < S(0) ? S(-1) : S(0));
+  return p.viscous_friction * velocity + sign * dry;
+}
+
+}  // namespace sms

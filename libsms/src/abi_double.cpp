@@ -1,0 +1,3 @@
+#define SMS_REAL double
+#define SMS_F(name) name
+#include "abi.inc"

@@ -1,0 +1,3 @@
+#define SMS_REAL float
+#define SMS_F(name) name##f
+#include "abi.inc"

@@ -1,0 +1,25 @@
+// --seed N repeats a random run, --count N sets how many random cases a property test takes; both are printed.
+#define DOCTEST_CONFIG_IMPLEMENT
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+
+#include "random_cases.hpp"
+
+namespace sms_test {
+unsigned long seed = std::random_device{}();
+int count = 10000;
+}  // namespace sms_test
+
+int main(int argc, char** argv) {
+  for (int i = 1; i + 1 < argc; ++i) {
+    if (std::strcmp(argv[i], "--seed") == 0) sms_test::seed = std::strtoul(argv[i + 1], nullptr, 10);
+    if (std::strcmp(argv[i], "--count") == 0) sms_test::count = std::atoi(argv[i + 1]);
+  }
+  std::printf("random cases: --seed %lu --count %d\n", sms_test::seed, sms_test::count);
+  doctest::Context context(argc, argv);
+  return context.run();
+}

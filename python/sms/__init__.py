@@ -1,0 +1,1 @@
+"""Pneumatic motion platform: its equations, and what measured data says about them."""
