@@ -14,17 +14,23 @@ est::CylinderRecord make_cylinder_record(Eigen::VectorXd extension, Eigen::Vecto
                                          Eigen::VectorXd acceleration, Eigen::VectorXd pressure_lower,
                                          Eigen::VectorXd rod_force, Eigen::VectorXd pressure_upper, bool gauge_lower,
                                          bool gauge_upper) {
-  return {std::move(extension),      std::move(velocity),  std::move(acceleration), std::move(pressure_lower),
-          std::move(pressure_upper), std::move(rod_force), gauge_lower,             gauge_upper};
+  return {std::move(extension),
+          std::move(velocity),
+          std::move(acceleration),
+          std::move(pressure_lower),
+          std::move(pressure_upper),
+          std::move(rod_force),
+          gauge_lower,
+          gauge_upper};
 }
 
-using NamedBounds = std::tuple<std::string, double, double>;
+using NamedBounds = std::tuple<std::string, double, double, double>;
 
 est::Fit fit(const est::Problem& problem, const Params& start, const std::vector<NamedBounds>& free,
              const Eigen::VectorXd& weight, int max_iterations) {
   std::vector<est::FreeParam> bounds;
   for (const NamedBounds& f : free) {
-    bounds.push_back({param_index(std::get<0>(f)), std::get<1>(f), std::get<2>(f)});
+    bounds.push_back({param_index(std::get<0>(f)), std::get<1>(f), std::get<2>(f), std::get<3>(f)});
   }
   est::FitOptions options;
   options.max_iterations = max_iterations;
@@ -72,7 +78,7 @@ void bind_estimation(py::module_& m) {
       .def_readonly("message", &est::Fit::message);
   m.def("fit", &fit, py::arg("problem"), py::arg("start"), py::arg("free"), py::arg("weight") = Eigen::VectorXd(),
         py::arg("max_iterations") = 100,
-        "Least squares over the parameters free = [(name, lower, upper), ...]; ValueError for a bad start.");
+        "Least squares over the parameters free = [(name, lower, upper, pull), ...]; ValueError for a bad start.");
 }
 
 }  // namespace sms_python

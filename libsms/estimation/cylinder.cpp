@@ -36,8 +36,7 @@ S residual_at(const Params<S>& p, const CylinderRecord& record, Eigen::Index i) 
         chamber_pressure(record.pressure_upper[i], record.gauge_upper, p.sensor_gain_chamber_pressure_upper,
                          p.sensor_offset_chamber_pressure_upper, p.ambient_pressure);
   }
-  return sensor_reading(rod_force(p, piston), p.sensor_gain_rod_force, p.sensor_offset_rod_force) -
-         record.rod_force[i];
+  return sensor_reading(rod_force(p, piston), p.sensor_gain_rod_force, p.sensor_offset_rod_force) - record.rod_force[i];
 }
 
 void check(const CylinderRecord& record, std::size_t number) {

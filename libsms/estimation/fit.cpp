@@ -24,13 +24,13 @@ Params<double> with_values(Params<double> params, const std::vector<FreeParam>& 
   return params;
 }
 
-// The whole problem as one block of residuals.
+// The whole problem as one block of residuals, the pulls last.
 class Residuals : public ceres::CostFunction {
  public:
   Residuals(const Problem& problem, const Params<double>& start, const std::vector<FreeParam>& free,
             const Eigen::VectorXd& weight)
       : problem_(problem), start_(start), free_(free), indices_(indices(free)), weight_(weight) {
-    set_num_residuals(problem.rows());
+    set_num_residuals(problem.rows() + static_cast<int>(free.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(free.size()));
   }
 
@@ -40,8 +40,16 @@ class Residuals : public ceres::CostFunction {
     RowMatrix jacobian;
     problem_.evaluate(with_values(start_, free_, values[0]), indices_, &residual, want ? &jacobian : nullptr);
     Eigen::Map<Eigen::VectorXd>(residuals, residual.size()) = weight_.cwiseProduct(residual);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      residuals[problem_.rows() + static_cast<int>(k)] = free_[k].pull * (values[0][k] - param(start_, free_[k].index));
+    }
     if (want) {
-      Eigen::Map<RowMatrix>(jacobians[0], jacobian.rows(), jacobian.cols()) = weight_.asDiagonal() * jacobian;
+      Eigen::Map<RowMatrix> all(jacobians[0], num_residuals(), jacobian.cols());
+      all.topRows(jacobian.rows()) = weight_.asDiagonal() * jacobian;
+      all.bottomRows(jacobian.cols()).setZero();
+      for (std::size_t k = 0; k < free_.size(); ++k) {
+        all(problem_.rows() + static_cast<int>(k), static_cast<int>(k)) = free_[k].pull;
+      }
     }
     return residual.allFinite();
   }

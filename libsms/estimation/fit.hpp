@@ -1,9 +1,11 @@
 // Least squares: the parameters with which a model comes closest to its records.
 //
-//   minimise  sum_i (w_i r_i(theta))^2   subject to  lower <= theta <= upper
+//   minimise  sum_i (w_i r_i(theta))^2 + sum_k (pull_k (theta_k - start_k))^2   subject to  lower <= theta <= upper
 //
 // solved by Ceres (Levenberg-Marquardt, projected on the bounds) with the problem's exact derivatives. A parameter that
-// is known within a declared uncertainty is given that box; one that is unknown gets the bounds of params.def.
+// is known within a declared uncertainty is given that box, and a pull as weak as one sample: where the data has
+// nothing to say between two parameters, the one that is known stays where it is. One that is unknown gets the bounds
+// of params.def and no pull.
 #pragma once
 
 #include <string>
@@ -17,6 +19,7 @@ struct FreeParam {
   int index;  // ParamIndex
   double lower;
   double upper;
+  double pull = 0.0;  // towards the start, per unit of the parameter, in the unit of the weighted residual
 };
 
 struct FitOptions {
@@ -29,7 +32,7 @@ struct Fit {
   Eigen::VectorXd residual;  // at params, not weighted
   RowMatrix jacobian;        // at params, rows x free, not weighted
   std::vector<bool> at_bound;
-  double cost = 0.0;  // sum of (w r)^2
+  double cost = 0.0;  // sum of (w r)^2, without the pull
   int iterations = 0;
   bool converged = false;
   std::string message;

@@ -29,7 +29,8 @@ void evaluate_with_jets(const Model& model, int rows, const Params<double>& para
     const int width = std::min(kWidth, columns - first);
     Params<Jet> seeded = cast<Jet>(params);
     for (int k = 0; k < width; ++k) {
-      param(seeded, free[static_cast<std::size_t>(first + k)]).v[k] = 1.0;
+      const int column = first + k;
+      param(seeded, free[static_cast<std::size_t>(column)]).v[k] = 1.0;
     }
     model(seeded, jets.data());
     for (int row = 0; row < rows; ++row) {

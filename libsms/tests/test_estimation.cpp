@@ -16,8 +16,8 @@ namespace {
 // A record of a machine whose parameters are `truth`, with perfect sensors.
 est::CylinderRecord record_of(const sms::Params<double>& truth, int n, sms_test::Random& random) {
   est::CylinderRecord r;
-  for (Eigen::VectorXd* signal : {&r.extension, &r.velocity, &r.acceleration, &r.pressure_lower, &r.pressure_upper,
-                                  &r.rod_force}) {
+  for (Eigen::VectorXd* signal :
+       {&r.extension, &r.velocity, &r.acceleration, &r.pressure_lower, &r.pressure_upper, &r.rod_force}) {
     signal->resize(n);
   }
   for (int i = 0; i < n; ++i) {
@@ -106,6 +106,16 @@ TEST_CASE("a fit recovers what made the data, and names a start outside the boun
   const est::Fit boxed = est::fit(problem, sms::Params<double>(), {{sms::index_of_bore_diameter, 0.0999, 0.1001}}, {});
   CHECK(boxed.at_bound[0]);
   CHECK(boxed.params.bore_diameter == doctest::Approx(0.1001));
+
+  // Bore and pressure gain cannot be told apart when all pressure is in the lower chamber: the pulled one stays.
+  est::CylinderRecord single = record_of(truth, 100, random);
+  single.pressure_upper.resize(0);
+  const est::CylinderProblem twin({single});
+  const est::Fit pulled = est::fit(
+      twin, truth,
+      {{sms::index_of_bore_diameter, 0.09, 0.11, 1e-3}, {sms::index_of_sensor_gain_chamber_pressure_lower, -0.5, 0.5}},
+      Eigen::VectorXd());
+  CHECK(pulled.params.bore_diameter == doctest::Approx(truth.bore_diameter).epsilon(1e-6));
 
   CHECK_THROWS_WITH_AS(est::fit(problem, truth, {{sms::index_of_bore_diameter, 0.09, 0.1}}, {}),
                        doctest::Contains("bore_diameter"), std::invalid_argument);

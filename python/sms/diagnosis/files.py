@@ -1,0 +1,61 @@
+"""A diagnosis on disk: report.html, diagnosis.json and extended.toml, each there whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+from sms.diagnosis.report import report_html
+from sms.diagnosis.result import Diagnosis
+from sms.io.errors import InputError
+from sms.io.rig import Declaration
+from sms.io.write import write_extended_rig, write_text_atomically
+
+COVERAGE = 2.0
+"""Standard errors that become the declared uncertainty of a found parameter: about 95 percent."""
+
+
+def check_output_folder(out: Path) -> None:
+    """InputError, before any work, if nothing can be written into the folder."""
+    existing = next(p for p in (out, *out.absolute().parents) if p.exists())
+    if not existing.is_dir():
+        raise InputError(f"{existing}: this is a file, not a folder; choose another --out")
+    if not os.access(existing, os.W_OK):
+        raise InputError(f"{existing}: cannot be written to; choose another --out")
+
+
+def write_diagnosis(diagnosis: Diagnosis, rig: Path, out: Path) -> tuple[Path, ...]:
+    """Write the three files into the folder `out`, made if need be. InputError if that cannot be done."""
+    extended, page, data = out / "extended.toml", out / "report.html", out / "diagnosis.json"
+    text = json.dumps(_plain(diagnosis.to_dict()), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    html = report_html(diagnosis)
+    write_extended_rig(rig, extended, extension_of(diagnosis), header_of(diagnosis))
+    write_text_atomically(page, html)
+    write_text_atomically(data, text)
+    return page, data, extended
+
+
+def extension_of(diagnosis: Diagnosis) -> dict[str, Declaration]:
+    """The found parameters as a rig file declares them: value, and COVERAGE standard errors."""
+    return {p.name: Declaration(p.value, COVERAGE * p.standard_error)
+            for cause in diagnosis.causes for p in cause.parameters}
+
+
+def header_of(diagnosis: Diagnosis) -> str:
+    lines = [f"Extended by sms {diagnosis.versions['sms']} from {diagnosis.rig}, seed {diagnosis.seed}.",
+             f"Verdict: {diagnosis.verdict}. {diagnosis.sentence}"]
+    return "\n".join(lines)
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no NaN and no infinity: both become null."""
+    if isinstance(value, dict):
+        return {key: _plain(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,207 @@
+"""What a diagnosis says: the contents of diagnosis.json, and the curves behind it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Verdict = Literal["no-evidence", "cause", "class", "combination", "unknown", "data-fault"]
+
+
+@dataclass(frozen=True)
+class ParameterValue:
+    """One parameter as the data has it."""
+
+    name: str
+    value: float
+    standard_error: float
+    unit: str
+    old_value: float
+
+
+@dataclass(frozen=True)
+class Member:
+    """One explanation among those of a class that these signals cannot tell apart."""
+
+    effect: str
+    signal: str | None
+    title: str
+    parameters: tuple[ParameterValue, ...]
+    similarity: float
+    """Cosine between this member's and the class's first member's footprint in the data, 0..1."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A named cause. With more than one member it is a class: the data fits each of them."""
+
+    effect: str
+    signal: str | None
+    kind: Literal["missing term", "shifted parameter"]
+    block: str
+    title: str
+    explanation: str
+    members: tuple[str, ...]
+    alternatives: tuple[Member, ...]
+    parameters: tuple[ParameterValue, ...]
+    p_value: float
+    consistency: dict[str, float]
+    """Record name -> the parameter refitted on this record alone (SI)."""
+    separated_by: str
+    """The measurement that would tell the members apart, empty for a single cause."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect that was tried, in one round of the search."""
+
+    round: int
+    effect: str
+    signal: str | None
+    parameters: tuple[ParameterValue, ...]
+    p_value: float
+    """Of the data on the identify records, if the effect were absent; corrected for the number tried."""
+    gain: float
+    """Share of the mean squared error on the validate records that it removes."""
+    gain_low: float
+    gain_high: float
+    """95 percent interval of gain, over resampled strokes."""
+    accepted: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class NotTestable:
+    """An effect about which these records say nothing."""
+
+    effect: str
+    signal: str | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What the extension is worth on one record it has not seen. In the unit of the signal."""
+
+    record: str
+    signal: str
+    unit: str
+    baseline_rms: float
+    extended_rms: float
+    noise_floor: float
+    reduction: float
+    """1 - extended_rms / baseline_rms, with its 95 percent interval over resampled strokes."""
+    reduction_low: float
+    reduction_high: float
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """What is still unexplained on the validate records, and along which signal it is arranged."""
+
+    rms: float
+    unit: str
+    share_of_excess: float
+    """Part of the baseline's reproducible squared error that is left, 0..1."""
+    repeats: float
+    """Part of the remaining squared error that repeats from stroke to stroke, 0..1."""
+    shares: dict[str, float]
+    """Where it sits, parts of the squared error that add up to one: "record" (a constant in each record, that is
+    at each pressure), "direction" (opposite in the two directions), "extension" (along the stroke), and what
+    "does not repeat"."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something the data check has to say about a file."""
+
+    severity: str
+    file: str
+    line: int | None
+    signal: str | None
+    message: str
+    remedy: str
+
+
+@dataclass(frozen=True)
+class NextExperiment:
+    title: str
+    purpose: str
+    separates: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Related:
+    """The same model on another rig of the same bench, all its records fitted together."""
+
+    rig: str
+    title: str
+    differs: str
+    """What is different there, in a word: "seal", "repeat"; empty for the diagnosed rig itself."""
+    parameters: tuple[ParameterValue, ...]
+
+
+@dataclass(frozen=True)
+class Series:
+    """The curves of one record, for the report. Arrays (n,), SI; comparison holds on the rows `used`."""
+
+    record: str
+    role: str
+    signal: str
+    unit: str
+    time: Array
+    measured: Array
+    baseline: Array
+    extended: Array
+    used: NDArray[np.bool_]
+    inputs: dict[str, Array]
+    """Signals against which the residual is drawn: "extension [m]", "velocity [m/s]", "direction", ..."""
+
+
+@dataclass
+class Diagnosis:
+    """The whole answer."""
+
+    rig: str
+    title: str
+    verdict: Verdict
+    sentence: str
+    """The verdict in plain words."""
+    conclusion: tuple[str, ...]
+    """What an engineer would conclude, a sentence each."""
+    causes: tuple[Cause, ...]
+    candidates: tuple[Candidate, ...]
+    not_testable: tuple[NotTestable, ...]
+    gain: tuple[Gain, ...]
+    remainder: Remainder | None
+    noise_floor: dict[str, float]
+    """"sample" and "stroke": rms of what differs from sample to sample and from stroke to stroke, N."""
+    baseline: tuple[ParameterValue, ...]
+    next_experiment: NextExperiment | None
+    related: tuple[Related, ...]
+    findings: tuple[Finding, ...]
+    records: dict[str, str]
+    """Record name -> role."""
+    seed: int
+    versions: dict[str, str] = field(default_factory=dict)
+    series: tuple[Series, ...] = field(default=(), repr=False)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The contents of diagnosis.json: everything but the curves."""
+        out: dict[str, Any] = {}
+        for name in self.__dataclass_fields__:
+            if name == "series":
+                continue
+            value = getattr(self, name)
+            out[name] = (
+                [asdict(v) for v in value]
+                if isinstance(value, tuple) and value and not isinstance(value[0], str)
+                else asdict(value)
+                if hasattr(value, "__dataclass_fields__")
+                else value
+            )
+        return out

@@ -1,0 +1,283 @@
+"""Judgements on coloured residuals.
+
+Samples 10 ms apart are not independent: what a seal does at one spot of the bore it does for the next
+hundred samples. Counting them as independent makes a tool name a cause on healthy data every time. Here
+the unit is the block: a stroke (one run of samples in one direction), or several in a row where noise
+lasts long against a stroke. Scores are summed over a block before they are compared with their own scatter
+(cluster-robust, Liang & Zeger 1986), the largest of all candidates is held against its own distribution
+under random signs of whole blocks (wild score bootstrap, Kline & Santos 2012: any correlation within a
+block and between candidates is respected, and so is the fact that many were tried), and intervals come
+from resampling blocks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sms.diagnosis.result import Array
+
+Index = NDArray[np.int64]
+BLOCK = 5.0
+"""Correlation lengths of the noise that a block holds at least."""
+
+
+def project_off(columns: Array, nuisance: Array) -> Array:
+    """What of columns (n, m) cannot be had by moving the nuisance (n, k): the least-squares remainder."""
+    if nuisance.shape[1] == 0:
+        return columns
+    scaled = nuisance / np.maximum(np.linalg.norm(nuisance, axis=0), 1e-300)
+    q, r = np.linalg.qr(scaled)
+    keep = np.abs(np.diag(r)) > 1e-10
+    q = q[:, keep]
+    return np.asarray(columns - q @ (q.T @ columns))
+
+
+def sum_by(group: Index, values: Array, groups: int) -> Array:
+    """Sums of values (n,) or (n, m) over groups: (groups,) or (groups, m)."""
+    out = np.zeros((groups, *values.shape[1:]))
+    np.add.at(out, group, values)
+    return out
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Score statistics of m candidates."""
+
+    statistic: Array
+    """(m,): sum of the blocks' scores over their scatter; about standard normal without the effect."""
+    p_value: Array
+    """(m,): chance of so large a statistic anywhere among the m, without any effect."""
+
+
+def score_test(columns: Array, residual: Array, block: Index, rng: np.random.Generator,
+               draws: int = 9999) -> Scores:
+    """Is the residual (n,) arranged along any of the columns (n, m), already projected off the nuisance?"""
+    scores = sum_by(block, columns * residual[:, None], int(block.max()) + 1)
+    scatter = np.sqrt(np.sum(scores**2, axis=0))
+    scatter[scatter == 0.0] = np.inf
+    statistic = scores.sum(axis=0) / scatter
+    signs = rng.choice([-1.0, 1.0], size=(draws, len(scores)))
+    largest = np.max(np.abs(signs @ (scores / scatter)), axis=1, initial=0.0)
+    exceed = np.sum(largest[:, None] >= np.abs(statistic)[None, :] * (1.0 - 1e-12), axis=0)
+    return Scores(statistic, np.asarray((1.0 + exceed) / (1.0 + draws)))
+
+
+def covariance_of(jacobian: Array, residual: Array, block: Index) -> Array:
+    """Covariance (k, k) of least-squares parameters, robust to any correlation within blocks."""
+    groups = int(block.max()) + 1
+    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
+    j = jacobian / scale
+    bread = np.linalg.pinv(j.T @ j, rcond=1e-12)
+    scores = sum_by(block, j * residual[:, None], groups)
+    n, k = j.shape
+    small_sample = groups / max(groups - 1, 1) * (n - 1) / max(n - k, 1)
+    return np.asarray(small_sample * bread @ (scores.T @ scores) @ bread / np.outer(scale, scale))
+
+
+def resampled(record: Index, block: Index, rng: np.random.Generator, draws: int = 999) -> Array:
+    """(draws, blocks): how often each block occurs when each record's blocks are drawn with replacement."""
+    counts = np.zeros((draws, int(block.max()) + 1))
+    for r in np.unique(record):
+        members = np.unique(block[record == r])
+        drawn = rng.choice(members, size=(draws, len(members)))
+        for b in range(draws):
+            np.add.at(counts[b], drawn[b], 1.0)
+    return counts
+
+
+def weighted_ms(squared: Array, block: Index, counts: Array) -> Array:
+    """(draws,): mean of squared (n,) in each resample of blocks."""
+    groups = counts.shape[1]
+    totals = sum_by(block, squared, groups)
+    sizes = sum_by(block, np.ones(len(squared)), groups)
+    return np.asarray((counts @ totals) / (counts @ sizes))
+
+
+def interval(values: Array) -> tuple[float, float]:
+    """The middle 95 percent."""
+    low, high = np.quantile(values, [0.025, 0.975])
+    return float(low), float(high)
+
+
+# ---- how long noise lasts ----------------------------------------------------------------------------------
+
+
+def correlation_length(residual: Array, stroke: Index, longest: int = 1000) -> float:
+    """Samples that count as one: 1 + 2 times the sum of the autocorrelation, up to where it first vanishes.
+
+    Only pairs within one stroke are compared. A pattern that repeats in every stroke is no noise: take it
+    off before (`without_repeats`).
+    """
+    centred = residual - residual.mean()
+    power = float(np.mean(centred**2))
+    length = 1.0
+    for lag in range(1, min(longest, len(residual) - 1)):
+        together = stroke[lag:] == stroke[:-lag]
+        if not np.any(together) or power == 0.0:
+            break
+        correlation = float(np.mean((centred[lag:] * centred[:-lag])[together])) / power
+        if correlation < 0.05:
+            break
+        length += 2.0 * correlation
+    return length
+
+
+def strokes_per_block(residual: Array, record: Index, stroke: Index) -> int:
+    """How many strokes make a block of BLOCK correlation lengths, at the most a quarter of a record's."""
+    strokes = int(stroke.max()) + 1
+    wanted = BLOCK * correlation_length(residual, stroke) * strokes / len(residual)
+    fewest = min(len(np.unique(stroke[record == r])) for r in np.unique(record))
+    return int(np.clip(np.ceil(wanted), 1, max(fewest // 4, 1)))
+
+
+def merge_strokes(record: Index, stroke: Index, together: int) -> Index:
+    """(n,): number of the block of `together` strokes in a row of one record, counted from 0."""
+    first = {r: int(stroke[record == r].min()) for r in np.unique(record)}
+    within = (stroke - np.vectorize(first.get)(record)) // together
+    key = record * (int(stroke.max()) + 1) + within
+    return np.unique(key, return_inverse=True)[1].astype(np.int64)
+
+
+# ---- what repeats and what does not -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Repeatability:
+    """A residual split by strokes over the same ground. Mean squares, in the residual's unit squared."""
+
+    sample: float
+    """What differs from sample to sample."""
+    stroke: float
+    """What does not repeat from stroke to stroke, sample noise included: no model of state explains it."""
+    repeats: float
+    """What repeats in every stroke at the same spot: a better model could take it."""
+    repeats_p_value: float
+    """Chance of so much repetition if strokes had random signs."""
+    drift: float
+    """What follows a straight line over the strokes of a record: warming up, wear, a sensor that wanders."""
+    drift_p_value: float
+    """Chance of so much drift if the strokes came in random order."""
+
+    @property
+    def systematic(self) -> float:
+        """What a better model could take, in space or in time."""
+        return self.repeats + self.drift
+
+
+@dataclass(frozen=True)
+class Ground:
+    """Which samples of different strokes were taken at the same place: record, direction and spot of the stroke."""
+
+    cell: Index
+    """(n,): one stroke at one place."""
+    place: Index
+    """(cells,)"""
+    stroke: Index
+    """(cells,)"""
+
+    @staticmethod
+    def of(record: Index, stroke: Index, extension: Array, direction: Array, spots: int = 24) -> Ground:
+        edges = np.quantile(extension, np.linspace(0.0, 1.0, spots + 1))
+        spot = np.clip(np.searchsorted(edges, extension, side="right") - 1, 0, spots - 1)
+        place = (record * 2 + (direction > 0)) * spots + spot
+        strokes = int(stroke.max()) + 1
+        cell_id, cell = np.unique(place * strokes + stroke, return_inverse=True)
+        return Ground(cell, np.unique(cell_id // strokes, return_inverse=True)[1], cell_id % strokes)
+
+    def cell_mean(self, residual: Array) -> Array:
+        return np.asarray(np.bincount(self.cell, residual) / np.bincount(self.cell))
+
+    def place_mean(self, cell_mean: Array) -> Array:
+        return np.asarray(np.bincount(self.place, cell_mean) / np.bincount(self.place))
+
+    def without_repeats(self, residual: Array) -> Array:
+        """The residual (n,) less what repeats at its place."""
+        return np.asarray(residual - self.place_mean(self.cell_mean(residual))[self.place][self.cell])
+
+
+def repeatability(residual: Array, record: Index, stroke: Index, extension: Array, direction: Array,
+                  rng: np.random.Generator, draws: int = 999) -> Repeatability:
+    """Split a residual (n,) into what repeats over the strokes at one place, what drifts, and what does neither."""
+    ground = Ground.of(record, stroke, extension, direction)
+    size = np.bincount(ground.cell).astype(float)
+    strokes_there = np.bincount(ground.place).astype(float)
+    mean = ground.cell_mean(residual)
+    place_mean = ground.place_mean(mean)
+    within = float(np.sum((residual - mean[ground.cell]) ** 2) / max(len(residual) - len(size), 1))
+    spread = np.bincount(ground.place, (mean - place_mean[ground.place]) ** 2)
+    between = spread / np.maximum(strokes_there - 1.0, 1.0)  # of a cell's mean, from stroke to stroke
+    share = np.where(strokes_there > 1, np.bincount(ground.place, size), 0.0)
+    share = share / max(share.sum(), 1e-300)
+    irreproducible = float(np.sum(share * between)) + within * (1.0 - 1.0 / max(size.mean(), 1.0))
+    repeats = float(np.sum(share * (place_mean**2 - between / strokes_there)))
+
+    signs = rng.choice([-1.0, 1.0], size=(draws, int(stroke.max()) + 1))
+    statistic = float(np.sum(share * place_mean**2))
+    larger = sum(float(np.sum(share * ground.place_mean(mean * sign[ground.stroke]) ** 2)) >= statistic
+                 for sign in signs)
+    return Repeatability(sample_noise(residual, stroke), irreproducible, max(repeats, 0.0),
+                         (1.0 + larger) / (1.0 + draws), *drift(residual, record, stroke, direction, rng, draws))
+
+
+def drift(residual: Array, record: Index, stroke: Index, direction: Array, rng: np.random.Generator,
+          draws: int = 999) -> tuple[float, float]:
+    """Mean square of the straight lines through the stroke means of each record and direction, and its chance."""
+    strokes = int(stroke.max()) + 1
+    size = np.bincount(stroke, minlength=strokes).astype(float)
+    mean = np.bincount(stroke, residual, strokes) / size
+    first = np.unique(stroke, return_index=True)[1]
+    side = record[first] * 2 + (direction[first] > 0)
+    groups = [np.flatnonzero(side == s) for s in np.unique(side)]
+    groups = [g for g in groups if len(g) >= 4]
+    if not groups:
+        return 0.0, 1.0
+
+    def line(order: Callable[[Index], Index]) -> tuple[float, float]:
+        """Mean square along the lines, and what chance alone would put there."""
+        along = chance = 0.0
+        for g in groups:
+            k = np.arange(len(g)) - 0.5 * (len(g) - 1)
+            m = mean[order(g)] - mean[g].mean()
+            fitted = float(k @ m) ** 2 / float(k @ k)
+            weight = float(size[g].mean() / size.sum())
+            along += weight * fitted
+            chance += weight * (float(m @ m) - fitted) / (len(g) - 2)
+        return along, chance
+
+    along, chance = line(lambda g: g)
+    larger = sum(line(rng.permutation)[0] >= along for _ in range(draws))
+    return max(along - chance, 0.0), (1.0 + larger) / (1.0 + draws)
+
+
+def sample_noise(residual: Array, stroke: Index) -> float:
+    """Mean square of what differs from one sample to the next, by differences within strokes (robust)."""
+    difference = np.diff(residual)[np.diff(stroke) == 0]
+    if len(difference) == 0:
+        return 0.0
+    return float((np.median(np.abs(difference)) / 0.6745) ** 2 / 2.0)
+
+
+def arrangement(residual: Array, record: Index, direction: Array, split: Repeatability) -> dict[str, float]:
+    """Where a residual (n,) sits, as shares of its mean square that add up to one.
+
+    "record": a constant in each record, that is at each pressure level; "direction": of opposite sign in the two
+    directions of a record; "extension": repeats along the stroke beyond these; "time": drifts over the strokes of a record; "does not
+    repeat": the rest.
+    """
+    total = float(np.mean(residual**2))
+    if total == 0.0:
+        return {}
+    side = record * 2 + (direction > 0)
+    records = np.bincount(record, residual) / np.maximum(np.bincount(record), 1)
+    sides = np.bincount(side, residual) / np.maximum(np.bincount(side), 1)
+    level = float(np.mean(records[record] ** 2))
+    both = float(np.mean(sides[side] ** 2))
+    repeats = min(max(split.repeats, both), total)
+    drifts = min(split.drift, total - repeats)
+    shares = {"record": level, "direction": both - level, "extension": repeats - both, "time": drifts,
+              "does not repeat": total - repeats - drifts}
+    return {name: max(share, 0.0) / total for name, share in shares.items()}

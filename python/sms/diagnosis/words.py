@@ -1,0 +1,149 @@
+"""The verdict in plain words: what an engineer would say, from the numbers of this diagnosis and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sms.diagnosis.result import (
+    Cause,
+    Finding,
+    Gain,
+    NextExperiment,
+    NotTestable,
+    ParameterValue,
+    Related,
+    Remainder,
+    Verdict,
+)
+from sms.units_display import format_change, format_estimate, format_percent, format_quantity
+from sms.units_display import words as spaced
+
+
+
+
+def amount(cause: Cause) -> str:
+    """How much: "0.75 ± 0.01 N per bar", or old -> new for a shifted parameter."""
+    return ", ".join(_amount(p, cause.kind == "shifted parameter") for p in cause.parameters)
+
+
+def _amount(p: ParameterValue, shifted: bool) -> str:
+    if shifted:
+        return format_change(p.old_value, p.value, p.standard_error, p.unit, p.name)
+    return format_estimate(p.value, p.standard_error, p.unit, p.name, signed=p.unit == "1")
+
+
+def names(cause: Cause) -> str:
+    """Every explanation of a cause: "gain error ... or bore of another size than stated"."""
+    titles = dict.fromkeys([cause.title, *(a.title for a in cause.alternatives)])
+    return " or ".join(titles)
+
+
+def sentence(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder | None) -> str:
+    if verdict == "no-evidence":
+        return ("No evidence that the simulation is wrong: within its declared uncertainties the model explains "
+                "these records down to what does not repeat from stroke to stroke.")
+    if verdict == "unknown":
+        where = f" ({arranged(remainder)})" if remainder is not None else ""
+        return ("The simulation is wrong, and no effect of the catalogue explains how: the error is systematic"
+                f"{where}.")
+    found = "; and ".join(f"{names(c)} ({amount(c)})" for c in causes)
+    return f"The simulation misses: {found}."
+
+
+def data_fault(faults: Sequence[Finding]) -> str:
+    first = faults[0]
+    where = f"{first.file}" + (f", line {first.line}" if first.line else "")
+    return (f"The data cannot be trusted, so nothing is concluded from it. {where}, {first.signal}: "
+            f"{first.message}; {first.remedy}.")
+
+
+ARRANGED = {
+    "record": "a constant in each record, that is at each pressure",
+    "direction": "of opposite sign in the two directions",
+    "extension": "along the stroke, the same in every stroke",
+    "time": "as a drift from stroke to stroke",
+}
+
+
+def arranged(remainder: Remainder) -> str:
+    """"0.8 N along the stroke, the same in every stroke; 0.5 N ..." - the parts that repeat, the largest first."""
+    shares = sorted(((s, name) for name, s in remainder.shares.items() if name in ARRANGED), reverse=True)
+    return "; ".join(f"{remainder.rms * share**0.5:.2f} {remainder.unit} {ARRANGED[name]}"
+                     for share, name in shares if share > 0.05)
+
+
+REPEAT = "repeat"
+"""What differs on a rig that is the same kind once more: its scatter is what any other difference is held against."""
+
+
+# ---- what an engineer would conclude ---------------------------------------------------------------------------
+
+
+def conclusion(verdict: Verdict, causes: Sequence[Cause], gain: Sequence[Gain], remainder: Remainder,
+               blind: Sequence[NotTestable], related: Sequence[Related]) -> tuple[str, ...]:
+    out = [_of_cause(c) for c in causes]
+    out += [_across_rigs(c, related) for c in causes if len(related) > 1]
+    if causes:
+        worth = ", ".join(f"{g.record}: {g.baseline_rms:.2f} to {g.extended_rms:.2f} {g.unit}" for g in gain)
+        out.append(f"On the records it was not fitted to, the extended model's error falls ({worth}).")
+    out.append(_of_remainder(verdict, remainder))
+    hidden = [n for n in blind if n.effect in ("viscous_friction", "stribeck_friction", "exponential_friction")]
+    if hidden:
+        out.append(f"Nothing is claimed about {', '.join(spaced(n.effect) for n in hidden)}: {hidden[0].reason}.")
+    return tuple(out)
+
+
+def _of_cause(cause: Cause) -> str:
+    text = f"{cause.title[0].upper()}{cause.title[1:]}: {amount(cause)}."
+    if cause.alternatives:
+        others = " or ".join(dict.fromkeys(a.title for a in cause.alternatives))
+        text += f" These signals cannot tell it from: {others}."
+    if len(cause.consistency) > 1:
+        p = cause.parameters[0]
+        values = ", ".join(f"{record} {format_quantity(v, p.unit, p.name)}" for record, v in cause.consistency.items())
+        text += f" Record by record: {values}."
+    return text
+
+
+def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
+    """What the relatives say of a cause: does it stay with the bench, or go with what was changed?"""
+    name = cause.parameters[0].name
+    found = [(r, p) for r in related for p in r.parameters if p.name == name]
+    listed = ", ".join(f"{r.title} {_amount(p, cause.kind == 'shifted parameter')}" for r, p in found)
+    own = found[0][1].value
+    repeats = [p.value for r, p in found if r.differs == REPEAT]
+    other = [(r, p) for r, p in found if r.differs not in ("", REPEAT)]
+    text = f"On related rigs, {cause.title}: {listed}."
+    if repeats:
+        values = [own, *repeats]
+        spread = max(values) - min(values)
+        text += f" Between repeats of the same kind it scatters by {format_quantity(spread, found[0][1].unit, name)}."
+        for r, p in other:
+            if abs(p.value - own) <= spread:
+                text += (f" With another {r.differs} it is the same within that scatter: it belongs to the rig, "
+                         f"not to the {r.differs}.")
+            else:
+                text += f" With another {r.differs} it differs by more than that: it goes with the {r.differs}."
+    return text
+
+
+def _of_remainder(verdict: Verdict, remainder: Remainder) -> str:
+    text = f"What is left on unseen records is {remainder.rms:.2f} {remainder.unit} rms"
+    if arranged(remainder):
+        text += f"; part of it is systematic, so there is more to be found: {arranged(remainder)}"
+    else:
+        text += ", and it does not repeat from stroke to stroke: a better model would not take it"
+    return text + "."
+
+
+def next_experiment(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder) -> NextExperiment | None:
+    """The measurement that would tell most: the first class apart, else the unknown closer."""
+    for cause in causes:
+        if cause.alternatives:
+            apart = tuple(dict.fromkeys([cause.effect, *(a.effect for a in cause.alternatives)]))
+            return NextExperiment("Tell the explanations apart", cause.separated_by, apart)
+    if verdict == "unknown":
+        return NextExperiment(
+            "Slow strokes over the whole travel, both ways, at two pressures and two speeds",
+            f"shows whether the unexplained force goes with position, pressure or speed ({arranged(remainder)})", ())
+    return None

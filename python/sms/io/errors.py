@@ -1,0 +1,30 @@
+"""The one exception that a person's input can raise, and the search for the word that was meant."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class InputError(ValueError):
+    """Something in a rig file, a record or an output folder cannot be used.
+
+    The text is one sentence for a person: what is wrong, where, what to do. The command line
+    prints it and ends with exit code 2.
+    """
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that `word` most likely was meant to be, or None when nothing is near."""
+    by_lower_case = {candidate.lower(): candidate for candidate in known}
+    found = difflib.get_close_matches(word.lower(), by_lower_case, n=1, cutoff=0.6)
+    return by_lower_case[found[0]] if found else None
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """The remedy for an unknown word: the nearest known one, or else the whole list."""
+    candidates = list(known)
+    near = nearest(word, candidates)
+    if near is not None:
+        return f"did you mean '{near}'?"
+    return f"known are: {', '.join(candidates)}"

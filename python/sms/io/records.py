@@ -1,0 +1,167 @@
+"""Records: one measured run as signals in SI units; cells that are no numbers are remembered.
+
+`load_record` raises InputError when a file cannot be a record at all (missing, empty, wrong column
+or unit); what is wrong inside it is collected as findings, see check.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sms.io.errors import InputError, did_you_mean
+from sms.io.rig import RecordSource, Rig, Role, SignalSource
+from sms.io.signals import SIGNAL_UNITS
+from sms.io.tables import Table, read_table
+from sms.io.units import array_to_si, split_column_name
+
+Severity = Literal["error", "warning", "note"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that the data check saw: where, what, and what to do about it."""
+
+    severity: Severity  #: error: cannot be used; warning: used, look at it; note: good to know
+    file: Path
+    line: int | None  #: line of a text file, row of .mat and .parquet, from 1; None: all of it
+    signal: str | None  #: None: the record as a whole
+    message: str
+    remedy: str
+
+    def __str__(self) -> str:
+        line = f", line {self.line}" if self.line is not None else ""
+        signal = f", {self.signal}" if self.signal is not None else ""
+        return f"{self.file}{line}{signal}: {self.message}; {self.remedy}"
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """One measured run. Each signal is an array (samples,) in SI units, as measured."""
+
+    name: str
+    role: Role
+    file: Path
+    signals: Mapping[str, NDArray[np.float64]]
+    gauge: frozenset[str]  #: signals that were measured against ambient and still are
+    findings: tuple[Finding, ...]  #: from reading; `check_record` adds to them
+    lines: NDArray[np.int64]  #: (samples,) line of the file that each sample stands in
+
+    @property
+    def first_line(self) -> int:
+        """The line of the first sample."""
+        return int(self.lines[0])
+
+    def __len__(self) -> int:
+        """The number of samples."""
+        return self.lines.size
+
+    def used(self, rig: Rig, signal: str) -> NDArray[np.float64]:
+        """A signal without the samples that the rig file skips at the start."""
+        return self.signals[signal][rig.skip_first :]
+
+    def finding(
+        self, severity: Severity, index: int | None, signal: str | None, message: str, remedy: str
+    ) -> Finding:
+        """A finding at one sample of this record, or (None) about all of it."""
+        line = None if index is None else int(self.lines[index])
+        return Finding(severity, self.file, line, signal, message, remedy)
+
+
+def load_record(rig: Rig, source: RecordSource) -> Record:
+    """Read one record of a rig into project signals in SI units.
+
+    Cells that are not numbers are NaN in the arrays and stand in `findings`; no sample is dropped.
+    """
+    table = read_table(source.file, rig.layout.delimiter, rig.layout.columns)
+    signals: dict[str, NDArray[np.float64]] = {}
+    findings: list[Finding] = []
+    for signal, wanted in rig.signals.items():
+        column = _find_column(table, wanted, rig)
+        if column is None:
+            continue
+        values, bad = table.numbers(column)
+        signals[signal] = _in_si(values, table.names[column], wanted, source.file)
+        findings += _bad_cells(bad, signal, table, rig.skip_first)
+    return Record(
+        name=source.name,
+        role=source.role,
+        file=source.file,
+        signals=signals,
+        gauge=frozenset(s for s, wanted in rig.signals.items() if wanted.gauge and s in signals),
+        findings=tuple(findings),
+        lines=table.lines,
+    )
+
+
+def _find_column(table: Table, wanted: SignalSource, rig: Rig) -> int | None:
+    """The column of a signal by its whole name or its name without unit; None if it may lack."""
+    plain = [split_column_name(name)[0] for name in table.names]
+    for known in (list(table.names), plain):
+        found = [i for i, name in enumerate(known) if name == wanted.column]
+        if len(found) > 1:
+            raise InputError(
+                f"{table.file}: {len(found)} columns are named '{wanted.column}'; in "
+                f"{rig.path}, [signals] {wanted.signal}, write the one meant with its unit in "
+                f"brackets ({', '.join(table.names[i] for i in found)})"
+            )
+        if found:
+            return found[0]
+    if wanted.optional:
+        return None
+    where = f"{table.file}: there is no column '{wanted.column}' for the signal '{wanted.signal}'"
+    if wanted.column in table.other_lengths:
+        raise InputError(
+            f"{where} of the same length: it has {table.other_lengths[wanted.column]} values, the "
+            f"other signals have {len(table.lines)}; save all signals equally long"
+        )
+    raise InputError(
+        f"{where} ({rig.path}, [signals] {wanted.signal}); "
+        f"{did_you_mean(split_column_name(wanted.column)[0], plain)}"
+    )
+
+
+def _in_si(
+    values: NDArray[np.float64], name: str, wanted: SignalSource, file: Path
+) -> NDArray[np.float64]:
+    """scale * column in SI + offset, with the unit from [signals] or from the column's name."""
+    si_unit = SIGNAL_UNITS[wanted.signal]
+    unit = wanted.unit if wanted.unit is not None else split_column_name(name)[1]
+    if unit is None:
+        raise InputError(
+            f"{file}: the column '{name}' for '{wanted.signal}' has no unit; name it "
+            f"'{name} [{si_unit}]' or write unit = \"{si_unit}\" in [signals] {wanted.signal}"
+        )
+    where = f"{file}, column '{name}' for the signal '{wanted.signal}'"
+    return wanted.scale * array_to_si(values, unit, si_unit, where) + wanted.offset
+
+
+def _bad_cells(
+    bad: list[tuple[int, str]], signal: str, table: Table, skip_first: int
+) -> list[Finding]:
+    """Cells that are not numbers: a note among the samples that are skipped, else an error."""
+    skipped = [cell for cell in bad if cell[0] < skip_first]
+    used = [cell for cell in bad if cell[0] >= skip_first]
+    findings = []
+    groups: tuple[tuple[list[tuple[int, str]], Severity], ...] = (
+        (skipped, "note"),
+        (used, "error"),
+    )
+    for cells, severity in groups:
+        if cells:
+            index, text = cells[0]
+            what = f"'{text}' is not a number" if text else "the cell is empty"
+            more = f" (and {len(cells) - 1} more in this column)" if len(cells) > 1 else ""
+            remedy = (
+                "not used, because it lies within skip_first"
+                if severity == "note"
+                else "repair or remove the line; numbers are written with a decimal point"
+            )
+            line = int(table.lines[index])
+            findings.append(Finding(severity, table.file, line, signal, what + more, remedy))
+    return findings

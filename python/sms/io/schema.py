@@ -1,0 +1,209 @@
+"""The structure of a rig file: its tables and keys, and one clear sentence for each mistake in it.
+
+Only the shape is checked here (which keys, text or number). What the text means (units, bounds,
+files) is the subject of rig.py.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, ValidationError
+
+from sms.io.errors import InputError, did_you_mean, nearest
+
+
+def _text_or_number(value: object) -> str | float:
+    if isinstance(value, str) or (isinstance(value, (int, float)) and not isinstance(value, bool)):
+        return value
+    raise ValueError('must be text with a number and a unit, like "25 mm"')
+
+
+TextOrNumber = Annotated[str | float, PlainValidator(_text_or_number)]
+
+
+def _short_form(key: str) -> BeforeValidator:
+    """Let a bare value stand for a table with this one key."""
+
+    def expand(value: object) -> object:
+        return value if isinstance(value, Mapping) else {key: value}
+
+    return BeforeValidator(expand)
+
+
+class Table(BaseModel):
+    """A TOML table in which an unknown key is a mistake and nothing is silently converted."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class RigTable(Table):
+    """[rig]: what was measured."""
+
+    kind: Literal["cylinder"]
+    title: str = ""
+    notes: str = ""
+
+
+class DataTable(Table):
+    """[data]: where the record files are and how they are laid out."""
+
+    folder: str | None = None
+    obtain: str | None = None
+    delimiter: Literal["comma", "semicolon", "tab", "whitespace"] = "comma"
+    columns: list[str] | None = Field(default=None, min_length=1)
+    skip_first: int = Field(default=0, ge=0)
+    speed_above: TextOrNumber | None = None
+
+
+class SignalTable(Table):
+    """One entry of [signals]: value in SI = scale * column in SI + offset."""
+
+    column: str
+    unit: str | None = None
+    scale: float = 1.0
+    offset: TextOrNumber | None = None
+    gauge: bool = False
+
+
+class ParameterTable(Table):
+    """One entry of [parameters]: what is known, or that it is to be fitted."""
+
+    value: TextOrNumber | None = None
+    uncertainty: TextOrNumber | None = None
+    fit: bool = False
+
+
+class RecordTable(Table):
+    """One entry of [[records]]."""
+
+    file: str
+    role: Literal["identify", "validate"]
+    name: str | None = None
+
+
+class RelatedTable(Table):
+    """One entry of [[related]]: the rig file of a relative on the same bench."""
+
+    file: str
+    differs: str
+
+
+class RigFile(Table):
+    """The whole rig file."""
+
+    rig: RigTable
+    data: DataTable = DataTable()
+    signals: dict[str, Annotated[SignalTable, _short_form("column")]] | None = None
+    parameters: dict[str, Annotated[ParameterTable, _short_form("value")]] = Field(
+        default_factory=dict
+    )
+    records: list[RecordTable] = Field(min_length=1)
+    related: list[RelatedTable] = Field(default_factory=list)
+
+
+_MODELS: Mapping[str, type[Table]] = {
+    "rig": RigTable,
+    "data": DataTable,
+    "signals": SignalTable,
+    "parameters": ParameterTable,
+    "records": RecordTable,
+    "related": RelatedTable,
+}
+_EXPECTED = {
+    "string_type": "must be text in quotes",
+    "bool_type": "must be true or false",
+    "int_type": "must be a whole number",
+    "float_type": "must be a number without quotes",
+    "list_type": "must be a list in brackets",
+    "model_type": "must be a table",
+    "dict_type": "must be a table",
+    "greater_than_equal": "must not be negative",
+    "too_short": "must not be empty",
+}
+
+
+def read_rig_text(path: Path) -> str:
+    """The text of the rig file; InputError when it is missing, empty or not text."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such rig file; check the path") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file in UTF-8; a rig file is TOML text") from None
+    except OSError as problem:
+        raise InputError(f"{path}: cannot be read ({problem.strerror})") from None
+    if not text.strip():
+        raise InputError(f"{path}: the rig file is empty; it needs [rig] and [[records]] at least")
+    return text
+
+
+def parse_rig_text(text: str, path: Path) -> RigFile:
+    """Check the structure of a rig file's text; `path` is what an InputError names."""
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise InputError(f"{path}: not valid TOML: {problem}; correct it there") from None
+    try:
+        return RigFile.model_validate(tables)
+    except ValidationError as problem:
+        errors: list[dict[str, Any]] = [dict(error) for error in problem.errors()]
+    # A misspelt key also makes its right spelling missing: the misspelling alone is what to say.
+    misspelt = [error["loc"][:-1] for error in errors if error["type"] == "extra_forbidden"]
+    errors = [e for e in errors if e["type"] != "missing" or e["loc"][:-1] not in misspelt]
+    more = f" (and {len(errors) - 1} more in this file)" if len(errors) > 1 else ""
+    raise InputError(f"{path}, {_sentence(errors[0], tables)}{more}")
+
+
+def place(*location: str | int) -> str:
+    """How a place in a rig file is named: "[data] skip_first", "[[records]] number 2, role"."""
+    table, *keys = location
+    if table != "records":
+        return " ".join([f"[{table}]", ".".join(str(key) for key in keys)]).strip()
+    name = f"[[records]] number {int(keys[0]) + 1}" if keys else "[[records]]"
+    return ", ".join([name, *(str(key) for key in keys[1:])])
+
+
+def _sentence(error: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
+    """One pydantic error as place, what is wrong, remedy."""
+    *parents, key = error["loc"]
+    kind = error["type"]
+    if kind == "extra_forbidden":
+        return _unknown_key(parents, str(key))
+    if kind == "missing":
+        return _missing_key(parents, str(key))
+    where = place(*error["loc"])
+    if error["loc"] == ("records",) and isinstance(tables.get("records"), Mapping):
+        return "[records]: there can be several records; write [[records]] with double brackets"
+    if kind == "literal_error":
+        given = str(error["input"])
+        return f"{where}: '{given}' is not known; {did_you_mean(given, _words(parents, str(key)))}"
+    problem = error["ctx"]["error"] if kind == "value_error" else _EXPECTED.get(kind, error["msg"])
+    return f"{where}: {problem}"
+
+
+def _missing_key(parents: list[str | int], key: str) -> str:
+    if parents:
+        return f"{place(*parents)}: the key '{key}' is missing; add it"
+    return f"the table {'[[records]]' if key == 'records' else f'[{key}]'} is missing; add it"
+
+
+def _unknown_key(parents: list[str | int], key: str) -> str:
+    model = _MODELS[str(parents[0])] if parents else RigFile
+    known = list(model.model_fields)
+    if not parents:
+        return f"the table [{key}] is not known; {did_you_mean(key, known)}"
+    where = place(*parents)
+    homes = [table for table, other in _MODELS.items() if key in other.model_fields]
+    if homes and nearest(key, known) is None:
+        return f"{where}: the key '{key}' does not belong here; move it to [{homes[0]}]"
+    return f"{where}: the key '{key}' is not known; {did_you_mean(key, known)}"
+
+
+def _words(parents: list[str | int], key: str) -> list[str]:
+    """The words allowed for a key that takes one of a few."""
+    annotation: Any = _MODELS[str(parents[0])].model_fields[key].annotation
+    return [str(word) for word in annotation.__args__]

@@ -1,0 +1,231 @@
+"""Files into tables of numbers: CSV and its relatives (also .gz), MATLAB .mat, Parquet.
+
+Nothing is dropped or repaired here: a cell that is not a number becomes NaN and is remembered with
+its line, so that the data check can name it.
+"""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import io
+import re
+import zlib
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import scipy.io
+from numpy.typing import NDArray
+
+from sms.io.errors import InputError
+
+TEXT_ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")
+_SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "whitespace": r"\s+"}
+_HEADER_WORD = re.compile(r"[^\s\[\]]+(?:\s*\[[^\]]*\])?")
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Named columns of one file, as they stand there."""
+
+    file: Path
+    names: tuple[str, ...]  #: "stroke [mm]"
+    cells: pd.DataFrame  #: columns 0 to n - 1, numbers or text
+    lines: NDArray[np.int64]  #: (samples,) line (in .mat and .parquet: row) of each sample
+    other_lengths: Mapping[str, int]  #: vectors of a .mat file that are not as long as the rest
+
+    def numbers(self, column: int) -> tuple[NDArray[np.float64], list[tuple[int, str]]]:
+        """One column as numbers (samples,), and the cells that are none: (index, their text)."""
+        cells = self.cells.iloc[:, column]
+        numeric = pd.api.types.is_numeric_dtype(cells) and not pd.api.types.is_bool_dtype(cells)
+        plain = cells if numeric else cells.astype(str).str.strip()
+        values = np.array(pd.to_numeric(plain, errors="coerce"), dtype=np.float64)
+        bad = np.flatnonzero(~np.isfinite(values))
+        texts = ["" if pd.isna(cells.iloc[i]) else str(cells.iloc[i]).strip() for i in bad]
+        values[bad] = np.nan
+        return values, [(int(i), text) for i, text in zip(bad, texts, strict=True)]
+
+
+def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
+    """Read a file by its ending.
+
+    `delimiter` ("comma", "semicolon", "tab", "whitespace") is for text files; `columns` names the
+    columns of a file that has no header line, or of the one matrix of a .mat file.
+    """
+    ending = Path(file.name.lower().removesuffix(".gz")).suffix
+    if ending in TEXT_ENDINGS:
+        return _read_text(file, delimiter, columns)
+    if ending == ".mat" and not file.name.lower().endswith(".gz"):
+        return _read_matlab(file, columns)
+    if ending == ".parquet":
+        return _read_parquet(file)
+    raise InputError(
+        f"{file}: files with the ending '{ending}' are not read; save it as .csv "
+        f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet)"
+    )
+
+
+def _decoded(file: Path) -> str:
+    """The text of a file, unpacked if its name ends with .gz."""
+    try:
+        content = file.read_bytes()
+        if file.name.lower().endswith(".gz"):
+            content = gzip.decompress(content)
+    except (gzip.BadGzipFile, EOFError, zlib.error):
+        raise InputError(f"{file}: broken or cut-off gzip file; copy it again") from None
+    except OSError as problem:
+        raise InputError(f"{file}: cannot be read ({problem.strerror}); check the file") from None
+    encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    try:
+        return content.decode(encoding)
+    except UnicodeDecodeError:  # Western European text of an older logger; numbers read the same
+        return content.decode("latin-1")
+
+
+def _read_text(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
+    numbered = [
+        (number, line)
+        for number, line in enumerate(_decoded(file).splitlines(), start=1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not numbered:
+        raise InputError(f"{file}: the file is empty; record it again or leave it out")
+    first = _split(numbered[0][1], delimiter)
+    if len(first) == 1:  # no record has one column
+        other = max(_SEPARATORS, key=lambda name: len(_split(numbered[0][1], name)))
+        raise InputError(
+            f"{file}, line {numbered[0][0]}: one column only when separated by {delimiter}; "
+            f'write delimiter = "{other}" in [data], or check the file'
+        )
+    has_header = not any(_is_number(cell) for cell in first)
+    if columns is None:
+        if not has_header:
+            raise InputError(
+                f"{file}, line {numbered[0][0]}: there is no header line; "
+                "name the columns in the rig file, [data] columns = [...]"
+            )
+        columns, numbered = first, numbered[1:]
+    elif has_header:
+        raise InputError(
+            f"{file}, line {numbered[0][0]}: the file has a header line ('{first[0]}' ...); "
+            "remove columns from [data] in the rig file"
+        )
+    if not numbered:
+        raise InputError(f"{file}: there is a header line but no data below it; record it again")
+    cells = _parse_cells(file, delimiter, numbered)
+    cells = _without_trailing_delimiter(cells, len(columns))
+    if cells.shape[1] != len(columns):
+        raise InputError(
+            f"{file}, line {numbered[0][0]}: {cells.shape[1]} columns, but {len(columns)} names "
+            f"({', '.join(columns)}); check delimiter (now '{delimiter}') and columns in [data]"
+        )
+    lines = np.array([number for number, _ in numbered], dtype=np.int64)
+    return Table(file, tuple(columns), cells, lines, {})
+
+
+def _split(line: str, delimiter: str) -> list[str]:
+    """The cells of one line; in a whitespace table "stroke [mm]" is one cell."""
+    if delimiter == "whitespace":
+        return _HEADER_WORD.findall(line)
+    cells = next(csv.reader([line], delimiter=_SEPARATORS[delimiter], skipinitialspace=True))
+    cells = [cell.strip() for cell in cells]
+    return cells[:-1] if len(cells) > 1 and not cells[-1] else cells
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _parse_cells(file: Path, delimiter: str, numbered: list[tuple[int, str]]) -> pd.DataFrame:
+    text = "\n".join(line.strip() if delimiter == "whitespace" else line for _, line in numbered)
+    try:
+        return pd.read_csv(
+            io.StringIO(text),
+            sep=_SEPARATORS[delimiter],
+            header=None,
+            keep_default_na=False,
+            low_memory=False,
+        )
+    except pd.errors.ParserError as problem:
+        found = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(problem))
+        if found is None:
+            raise InputError(f"{file}: not a table ({problem}); check [data] delimiter") from None
+        raise InputError(
+            f"{file}, line {numbered[int(found[2]) - 1][0]}: {found[3]} cells, but "
+            f"{found[1]} in the lines before; repair the line or check [data] delimiter"
+        ) from None
+
+
+def _without_trailing_delimiter(cells: pd.DataFrame, expected: int) -> pd.DataFrame:
+    """Drop the empty last column that a delimiter at the end of every line makes."""
+    if cells.shape[1] == expected + 1 and bool(cells.iloc[:, -1].isin([""]).all()):
+        return cells.iloc[:, :-1]
+    if cells.shape[1] == expected + 1 and bool(cells.iloc[:, -1].isna().all()):
+        return cells.iloc[:, :-1]
+    return cells
+
+
+def _read_matlab(file: Path, columns: Sequence[str] | None) -> Table:
+    try:
+        variables = scipy.io.loadmat(str(file), squeeze_me=True, struct_as_record=True)
+    except NotImplementedError:
+        raise InputError(f"{file}: MATLAB 7.3 file; save it with  save -v7") from None
+    except Exception as problem:  # scipy answers a broken file with errors of many kinds
+        raise InputError(f"{file}: not a readable .mat file ({problem}); save it again") from None
+    arrays: dict[str, NDArray[np.generic]] = {}
+    for name, variable in variables.items():
+        if not name.startswith("__"):
+            _collect(name, np.asarray(variable), arrays)
+    if columns is not None:
+        fitting = [a for a in arrays.values() if a.ndim == 2 and a.shape[1] == len(columns)]
+        if len(fitting) != 1:
+            raise InputError(
+                f"{file}: {len(fitting)} matrices with {len(columns)} columns, one is needed for "
+                "the names in [data] columns"
+            )
+        arrays = {name: fitting[0][:, i] for i, name in enumerate(columns)}
+    return _table_of({name: a for name, a in arrays.items() if a.ndim == 1}, file)
+
+
+def _collect(name: str, value: NDArray[np.generic], into: dict[str, NDArray[np.generic]]) -> None:
+    """Numeric arrays of a .mat variable; a field of a structure is named "log.time"."""
+    if value.dtype.names is not None and value.ndim == 0:
+        for field, content in zip(value.dtype.names, value.item(), strict=True):
+            _collect(f"{name}.{field}", np.asarray(content), into)
+    elif value.dtype.kind in "fiu" and value.ndim in (1, 2):
+        into[name] = value
+
+
+def _table_of(arrays: dict[str, NDArray[np.generic]], file: Path) -> Table:
+    """A table of the vectors that have the most common length (of equals, the largest)."""
+    if not arrays:
+        raise InputError(f"{file}: there is no vector of numbers in it; save each signal as one")
+    counts = Counter(array.size for array in arrays.values())
+    length = max(counts, key=lambda size: (counts[size], size))
+    kept = {name: array for name, array in arrays.items() if array.size == length}
+    others = {name: array.size for name, array in arrays.items() if array.size != length}
+    cells = pd.DataFrame({i: array for i, array in enumerate(kept.values())})
+    return Table(file, tuple(kept), cells, np.arange(1, length + 1), others)
+
+
+def _read_parquet(file: Path) -> Table:
+    try:
+        cells = pd.read_parquet(file)
+    except ImportError:
+        raise InputError(
+            f"{file}: reading Parquet needs one more package; pip install pyarrow, or save as .csv"
+        ) from None
+    except Exception as problem:  # the engine behind pandas has errors of its own
+        raise InputError(f"{file}: not a readable Parquet file ({problem})") from None
+    if cells.empty:
+        raise InputError(f"{file}: the file is empty; record it again")
+    names = tuple(str(name) for name in cells.columns)
+    return Table(file, names, cells, np.arange(1, len(cells) + 1), {})

@@ -1,0 +1,173 @@
+"""Writing: files that are there whole or not at all, records as CSV, and the extended rig file."""
+
+from __future__ import annotations
+
+import gzip
+import os
+import secrets
+from collections.abc import Mapping, MutableMapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import tomlkit
+from numpy.typing import ArrayLike
+from tomlkit.items import InlineTable
+
+from sms.io.errors import InputError, did_you_mean
+from sms.io.rig import Declaration, check_bounds, files_in, interpret
+from sms.io.schema import parse_rig_text, read_rig_text
+from sms.io.signals import column_name
+from sms.io.units import from_si, interval_from_si, split_quantity
+from sms.parameters import PARAMETERS
+
+
+def write_bytes_atomically(path: Path, content: bytes) -> None:
+    """Write a file so that a reader sees the old one or the new one, never a part.
+
+    The new one is written beside it and then takes its name. InputError when that cannot be done.
+    """
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with temporary.open("xb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as problem:
+        raise InputError(
+            f"{path}: cannot be written ({problem.strerror}); choose another output folder"
+        ) from None
+
+
+def write_text_atomically(path: Path, text: str) -> None:
+    """As `write_bytes_atomically`, for text in UTF-8."""
+    write_bytes_atomically(path, text.encode("utf-8"))
+
+
+def write_table(path: Path, columns: Mapping[str, ArrayLike]) -> None:
+    """Write columns (samples,) named "name [unit]" as CSV; gzip when the name ends with .gz."""
+    text = pd.DataFrame({name: np.asarray(c) for name, c in columns.items()}).to_csv(index=False)
+    content = text.encode("utf-8")
+    if path.suffix == ".gz":
+        content = gzip.compress(content, mtime=0)  # without the time: equal tables, equal files
+    write_bytes_atomically(path, content)
+
+
+def write_record(path: Path, signals: Mapping[str, ArrayLike]) -> None:
+    """Write signals in SI units (pressures absolute) under the project's own column names."""
+    write_table(path, {column_name(signal): values for signal, values in signals.items()})
+
+
+def write_extended_rig(
+    original_path: Path,
+    out_path: Path,
+    parameter_updates: Mapping[str, Declaration],
+    header_comment: str,
+) -> None:
+    """Write the rig file again with parameters (SI) set or changed, all else as its author left it.
+
+    Comments and order stay; a value keeps the unit it was written in. `header_comment` goes to the
+    top. A data folder beside the original is still found from the new place. The result is checked
+    by the same reader before it replaces anything.
+    """
+    text = read_rig_text(original_path)
+    rig = interpret(parse_rig_text(text, original_path), original_path)
+    document = tomlkit.parse(text)
+    if "parameters" not in document:
+        document.add(tomlkit.nl())
+        document.add("parameters", tomlkit.table())
+    table: Any = document["parameters"]
+    for name, declaration in parameter_updates.items():
+        _set_parameter(table, name, declaration, f"{out_path}, [parameters] {name}")
+    _keep_data_reachable(document, original_path, out_path)
+    _keep_related_reachable(document, original_path, out_path)
+    header = "".join(f"# {line}".rstrip() + "\n" for line in header_comment.splitlines())
+    extended = f"{header}\n{tomlkit.dumps(document)}"
+    again = interpret(parse_rig_text(extended, out_path), out_path)
+    if [record.file for record in again.records] != [record.file for record in rig.records]:
+        raise InputError(
+            f"{out_path}: other records would be found from here than from {original_path}; "
+            "write it into another folder"
+        )
+    write_text_atomically(out_path, extended)
+
+
+def _set_parameter(table: Any, name: str, declaration: Declaration, where: str) -> None:
+    """Set one entry of [parameters], in place where there is one."""
+    if name not in PARAMETERS:
+        raise InputError(f"{where}: there is no such parameter; {did_you_mean(name, PARAMETERS)}")
+    parameter = PARAMETERS[name]
+    check_bounds(parameter, declaration.value, where)
+    old = table.get(name)
+    entry = old if isinstance(old, Mapping) else {"value": old}
+    unit = "" if parameter.unit == "1" else parameter.unit
+    for key in ("value", "uncertainty"):  # the unit the author wrote, the value's before the other
+        if entry.get(key) is not None:
+            unit = split_quantity(_plain(entry[key]), parameter.unit, where)[1]
+            break
+    new: dict[str, object] = {
+        "value": _written(from_si(declaration.value, unit, parameter.unit, where)),
+        "uncertainty": _written(
+            interval_from_si(declaration.uncertainty, unit, parameter.unit, where)
+        ),
+    }
+    if declaration.fit:
+        new["fit"] = True
+    if isinstance(old, MutableMapping) and not isinstance(
+        old, InlineTable
+    ):  # [parameters.name], or dotted
+        for key in [key for key in old if key not in new]:
+            del old[key]
+        old.update(new)
+    else:
+        pairs = ", ".join(
+            f"{key} = {tomlkit.item(value).as_string()}" for key, value in new.items()
+        )
+        table[name] = tomlkit.value(f"{{ {pairs} }}")
+
+
+def _plain(value: Any) -> Any:
+    """A tomlkit item as the Python value in it."""
+    return value.unwrap() if hasattr(value, "unwrap") else value
+
+
+def _written(text: str) -> str | float:
+    """A quantity as it stands in TOML: a dimensionless one is a number without quotes."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _keep_data_reachable(document: Any, original_path: Path, out_path: Path) -> None:
+    """Point [data] folder from the new place to data that lies beside the original.
+
+    Data found under $SMS_DATA or ../shared/data is found from anywhere, and stays as written.
+    """
+    data = document.get("data", {})
+    folder = Path(_plain(data.get("folder", ""))).expanduser()
+    beside = (original_path.parent / folder).resolve()
+    names = [str(_plain(record["file"])) for record in document["records"]]
+    if folder.is_absolute() or files_in(beside, names) is None:
+        return
+    from_new_place = Path(os.path.relpath(beside, out_path.parent.resolve())).as_posix()
+    if from_new_place == folder.as_posix():
+        return
+    if "data" not in document:
+        document.add("data", tomlkit.table())
+    document["data"]["folder"] = from_new_place
+
+
+def _keep_related_reachable(document: Any, original_path: Path, out_path: Path) -> None:
+    """Point each [[related]] file from the new place to the rig file beside the original."""
+    for entry in document.get("related", []):
+        file = Path(_plain(entry["file"])).expanduser()
+        if not file.is_absolute():
+            there = (original_path.parent / file).resolve()
+            entry["file"] = Path(os.path.relpath(there, out_path.parent.resolve())).as_posix()

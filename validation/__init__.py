@@ -1,0 +1,1 @@
+"""Independent references, published results side by side, hidden-effect trials."""
