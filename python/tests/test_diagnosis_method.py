@@ -52,7 +52,7 @@ def make_rig(folder: Path, bore_uncertainty: str = "0.001 mm", extra_force: floa
     for name, gauge, role in RECORDS:
         pressure = np.full(len(time), gauge + 1e5)
         force = _core.rod_force(params, extension, velocity, acceleration, pressure, 1e5)
-        force = force + rng.normal(0.0, 0.2, len(time)) + extra_force * np.sin(extension / 0.003)
+        force = force + rng.normal(0.0, 0.2, len(time)) + extra_force * np.sin(2.0 * np.pi * extension / 0.003)
         write_record(folder / f"{name}.csv", {
             "time": time, "extension": extension + rng.normal(0.0, 2e-6, len(time)),
             "chamber_pressure_lower": pressure + rng.normal(0.0, 100.0, len(time)), "rod_force": force})
@@ -184,3 +184,17 @@ def test_strokes_are_runs_in_one_direction() -> None:
     direction[55:] = 1.0  # five samples: a jerk, not a stroke
     stroke = number_strokes(moving, direction)
     assert list(stroke[[0, 24, 27, 30, 39, 40, 54, 57]]) == [0, 0, -1, 1, 1, 2, 2, -1]
+
+
+def test_a_screw_pitch_is_found_in_what_is_left_and_none_where_there_is_none(tmp_path: Path) -> None:
+    with_screw, without = tmp_path / "with", tmp_path / "without"
+    with_screw.mkdir()
+    without.mkdir()
+    left = diagnose(make_rig(with_screw, extra_force=0.4)).remainder
+    assert left is not None
+    assert left.ripple is not None
+    assert left.ripple.period == pytest.approx(0.003, rel=0.02)
+    assert left.ripple.amplitude == pytest.approx(0.4, rel=0.2)
+    healthy = diagnose(make_rig(without)).remainder
+    assert healthy is not None
+    assert healthy.ripple is None

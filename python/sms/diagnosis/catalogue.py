@@ -12,6 +12,14 @@ from typing import Any, Literal
 from sms.parameters import PARAMETERS
 
 
+SIGNALS_IN_WORDS = {
+    "rod_force": "rod force",
+    "chamber_pressure_lower": "lower chamber pressure",
+    "chamber_pressure_upper": "upper chamber pressure",
+    "extension": "position",
+}
+
+
 @dataclass(frozen=True)
 class Effect:
     """One hypothesis: an effect of the catalogue, for one signal where it belongs to a sensor."""
@@ -43,7 +51,7 @@ class Effect:
 
 def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
     for signal in entry.get("signals", [None]):
-        text = {key: entry[key].format(signal=(signal or "").replace("_", " "))
+        text = {key: entry[key].format(signal=SIGNALS_IN_WORDS.get(signal, ""))
                 for key in ("title", "cause")}
         yield Effect(
             id=entry["id"],

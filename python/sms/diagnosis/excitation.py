@@ -79,9 +79,17 @@ def accelerations(data: Comparison, stroke: float) -> str:
             f"{ACCELERATION:g} m/s^2")
 
 
+def motion_forces(data: Comparison, stroke: float) -> str:
+    if not speeds(data, stroke) and not accelerations(data, stroke):
+        return ""
+    return ("the motion is an input of this rig's force balance: an error of its sensor shows only in forces that "
+            "follow speed and acceleration, and these records are too slow and even for that")
+
+
 CHECKS: dict[str, Callable[[Comparison, float], str]] = {
     check.__name__: check
-    for check in (levels, both_directions, travel, speeds, break_away, fast, accelerations)
+    for check in (levels, both_directions, travel, speeds, break_away, fast, accelerations,
+                  motion_forces)
 }
 
 

@@ -15,6 +15,7 @@ from sms.diagnosis import words
 from sms.diagnosis.catalogue import Effect, catalogue
 from sms.diagnosis.prepare import Comparison, Motion, inputs_of, predict, prepare, with_role
 from sms.diagnosis.related import related_rigs
+from sms.diagnosis.ripple import find_ripple
 from sms.diagnosis.result import (
     Candidate,
     Cause,
@@ -205,6 +206,16 @@ def value_of(fitted: Fitted, name: str, old: float) -> ParameterValue:
     return ParameterValue(name, fitted.params[name], error, PARAMETERS[name].unit, old)
 
 
+def found_value(fitted: Fitted, name: str, old: float, data: Data) -> ParameterValue:
+    """A cause's parameter. Its error is that between strokes or that between records, whichever is larger."""
+    estimates = record_by_record(fitted, name, data)
+    value = fitted.params[name]
+    weight = sum(e.information for e in estimates)
+    scatter = sum(e.information * (e.value - value) ** 2 for e in estimates)
+    between = np.sqrt(scatter / weight / (len(estimates) - 1))
+    return ParameterValue(name, value, max(fitted.standard_error(name), float(between)), PARAMETERS[name].unit, old)
+
+
 def _values(trial: Trial, rig_start: _core.Params) -> tuple[ParameterValue, ...]:
     return tuple(value_of(trial.fitted, n, rig_start[n]) for n in trial.effect.parameters)
 
@@ -230,7 +241,7 @@ def instead(outcome: Outcome, baseline: Fitted, members: Sequence[Trial], other:
 def cause_of(members: Sequence[Trial], outcome: Outcome, baseline: Fitted, data: Data) -> Cause:
     first = members[0]
     start = _core.Params(**{n: d.value for n, d in data.rig.parameters.items()})
-    final = tuple(value_of(outcome.final, n, start[n]) for n in first.effect.parameters)
+    final = tuple(found_value(outcome.final, n, start[n], data) for n in first.effect.parameters)
     return Cause(
         effect=first.effect.id,
         signal=first.effect.signal,
@@ -241,26 +252,36 @@ def cause_of(members: Sequence[Trial], outcome: Outcome, baseline: Fitted, data:
         members=tuple(dict.fromkeys(m.effect.id for m in members)),
         alternatives=tuple(
             Member(m.effect.id, m.effect.signal, m.effect.title,
-                   tuple(value_of(instead(outcome, baseline, members, m, data), n, start[n])
+                   tuple(found_value(instead(outcome, baseline, members, m, data), n, start[n], data)
                          for n in m.effect.parameters),
                    first.similarity[m.effect.key])
             for m in members[1:]),
         parameters=final,
         p_value=first.p_value,
-        consistency=consistency(outcome.final, first.effect.parameters[0], data),
+        consistency={e.record: e.value for e in record_by_record(outcome.final, first.effect.parameters[0], data)},
         separated_by=" ".join(dict.fromkeys(m.effect.separated_by for m in members)) if len(members) > 1 else "",
     )
 
 
-def consistency(fitted: Fitted, name: str, data: Data) -> dict[str, float]:
-    """The parameter refitted on each record alone, all others held: record name -> value, SI."""
-    out = {}
+@dataclass(frozen=True)
+class RecordEstimate:
+    """One parameter refitted on one record alone, all others held."""
+
+    record: str
+    value: float
+    information: float
+    """Sum of the squared sensitivities: its weight among the records."""
+
+
+def record_by_record(fitted: Fitted, name: str, data: Data) -> list[RecordEstimate]:
+    out = []
     for comparison in (data.identify, data.validate):
         for number, motion in enumerate(comparison.motions):
             residual, jacobian = comparison.part(number).problem.evaluate(fitted.params, [name])
             column = jacobian[:, 0]
-            step = -float(column @ residual) / max(float(column @ column), 1e-300)
-            out[motion.name] = fitted.params[name] + step
+            information = max(float(column @ column), 1e-300)
+            step = -float(column @ residual) / information
+            out.append(RecordEstimate(motion.name, fitted.params[name] + step, information))
     return out
 
 
@@ -288,6 +309,7 @@ def remainder_of(extended: Fitted, data: Data, before: Repeatability, after: Rep
         share_of_excess=after.systematic / before.systematic if before.systematic > 0.0 else 0.0,
         repeats=min(after.repeats / ms, 1.0) if ms > 0.0 else 0.0,
         shares=arrangement(residual, data.validate.record, data.validate.inputs["direction"], after),
+        ripple=find_ripple(residual, data.validate),
     )
 
 

@@ -100,6 +100,16 @@ class Gain:
 
 
 @dataclass(frozen=True)
+class Ripple:
+    """A periodic force along the stroke, the same period in every record and direction."""
+
+    period: float
+    """m"""
+    amplitude: float
+    """N, mean over records and directions."""
+
+
+@dataclass(frozen=True)
 class Remainder:
     """What is still unexplained on the validate records, and along which signal it is arranged."""
 
@@ -111,8 +121,9 @@ class Remainder:
     """Part of the remaining squared error that repeats from stroke to stroke, 0..1."""
     shares: dict[str, float]
     """Where it sits, parts of the squared error that add up to one: "record" (a constant in each record, that is
-    at each pressure), "direction" (opposite in the two directions), "extension" (along the stroke), and what
-    "does not repeat"."""
+    at each pressure), "direction" (opposite in the two directions), "extension" (along the stroke), "time" (a drift
+    from stroke to stroke), and what "does not repeat"."""
+    ripple: Ripple | None = None
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,14 @@ from sms.diagnosis.result import (
     Remainder,
     Verdict,
 )
-from sms.units_display import format_change, format_estimate, format_percent, format_quantity
+from sms.units_display import format_change, format_estimate, format_quantity
 from sms.units_display import words as spaced
 
 
+
+
+def capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def amount(cause: Cause) -> str:
@@ -32,10 +36,15 @@ def _amount(p: ParameterValue, shifted: bool) -> str:
     return format_estimate(p.value, p.standard_error, p.unit, p.name, signed=p.unit == "1")
 
 
-def names(cause: Cause) -> str:
-    """Every explanation of a cause: "gain error ... or bore of another size than stated"."""
-    titles = dict.fromkeys([cause.title, *(a.title for a in cause.alternatives)])
-    return " or ".join(titles)
+def explained(cause: Cause) -> str:
+    """A cause with its size; for a class every explanation with its own: "one of ...: which, these signals cannot tell"."""
+    if not cause.alternatives:
+        return f"{cause.title} ({amount(cause)})"
+    rivals = [f"{cause.title} ({amount(cause)})"]
+    for rival in cause.alternatives:
+        sizes = ", ".join(_amount(p, p.old_value != 0.0) for p in rival.parameters)
+        rivals.append(f"{rival.title} ({sizes})")
+    return f"one of {'; '.join(rivals)} - which one, these signals cannot tell"
 
 
 def sentence(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder | None) -> str:
@@ -46,8 +55,9 @@ def sentence(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder | N
         where = f" ({arranged(remainder)})" if remainder is not None else ""
         return ("The simulation is wrong, and no effect of the catalogue explains how: the error is systematic"
                 f"{where}.")
-    found = "; and ".join(f"{names(c)} ({amount(c)})" for c in causes)
-    return f"The simulation misses: {found}."
+    if len(causes) == 1:
+        return f"The simulation misses {explained(causes[0])}."
+    return "The simulation misses " + "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1)) + "."
 
 
 def data_fault(faults: Sequence[Finding]) -> str:
@@ -81,8 +91,7 @@ REPEAT = "repeat"
 
 def conclusion(verdict: Verdict, causes: Sequence[Cause], gain: Sequence[Gain], remainder: Remainder,
                blind: Sequence[NotTestable], related: Sequence[Related]) -> tuple[str, ...]:
-    out = [_of_cause(c) for c in causes]
-    out += [_across_rigs(c, related) for c in causes if len(related) > 1]
+    out = [_across_rigs(c, related) for c in causes if len(related) > 1]
     if causes:
         worth = ", ".join(f"{g.record}: {g.baseline_rms:.2f} to {g.extended_rms:.2f} {g.unit}" for g in gain)
         out.append(f"On the records it was not fitted to, the extended model's error falls ({worth}).")
@@ -93,37 +102,25 @@ def conclusion(verdict: Verdict, causes: Sequence[Cause], gain: Sequence[Gain], 
     return tuple(out)
 
 
-def _of_cause(cause: Cause) -> str:
-    text = f"{cause.title[0].upper()}{cause.title[1:]}: {amount(cause)}."
-    if cause.alternatives:
-        others = " or ".join(dict.fromkeys(a.title for a in cause.alternatives))
-        text += f" These signals cannot tell it from: {others}."
-    if len(cause.consistency) > 1:
-        p = cause.parameters[0]
-        values = ", ".join(f"{record} {format_quantity(v, p.unit, p.name)}" for record, v in cause.consistency.items())
-        text += f" Record by record: {values}."
-    return text
-
-
 def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
     """What the relatives say of a cause: does it stay with the bench, or go with what was changed?"""
     name = cause.parameters[0].name
     found = [(r, p) for r in related for p in r.parameters if p.name == name]
-    listed = ", ".join(f"{r.title} {_amount(p, cause.kind == 'shifted parameter')}" for r, p in found)
-    own = found[0][1].value
+    own = found[0][1]
+    others = ", ".join(f"{_amount(p, cause.kind == 'shifted parameter')} ({r.title})" for r, p in found[1:])
+    text = f"{capital(cause.title)}: {_amount(own, cause.kind == 'shifted parameter')} here, {others}."
     repeats = [p.value for r, p in found if r.differs == REPEAT]
-    other = [(r, p) for r, p in found if r.differs not in ("", REPEAT)]
-    text = f"On related rigs, {cause.title}: {listed}."
-    if repeats:
-        values = [own, *repeats]
-        spread = max(values) - min(values)
-        text += f" Between repeats of the same kind it scatters by {format_quantity(spread, found[0][1].unit, name)}."
-        for r, p in other:
-            if abs(p.value - own) <= spread:
-                text += (f" With another {r.differs} it is the same within that scatter: it belongs to the rig, "
-                         f"not to the {r.differs}.")
-            else:
-                text += f" With another {r.differs} it differs by more than that: it goes with the {r.differs}."
+    if not repeats:
+        return text
+    spread = max([own.value, *repeats]) - min([own.value, *repeats])
+    text += f" Repeats scatter by {format_quantity(spread, own.unit, name)}."
+    for differs in dict.fromkeys(r.differs for r, _ in found if r.differs not in ("", REPEAT)):
+        values = [p.value for r, p in found if r.differs == differs]
+        if all(abs(v - own.value) <= spread for v in values):
+            text += (f" With another {differs} it is the same within that scatter: it belongs to the rig, not to the "
+                     f"{differs}.")
+        else:
+            text += f" With another {differs} it differs by more than that: it goes with the {differs}."
     return text
 
 
@@ -131,6 +128,9 @@ def _of_remainder(verdict: Verdict, remainder: Remainder) -> str:
     text = f"What is left on unseen records is {remainder.rms:.2f} {remainder.unit} rms"
     if arranged(remainder):
         text += f"; part of it is systematic, so there is more to be found: {arranged(remainder)}"
+        if (ripple := remainder.ripple) is not None:
+            text += (f". Along the stroke it has a period of {format_quantity(ripple.period, 'm')}, amplitude "
+                     f"{ripple.amplitude:.2f} {remainder.unit}: look for a screw, thread or gear of that pitch")
     else:
         text += ", and it does not repeat from stroke to stroke: a better model would not take it"
     return text + "."

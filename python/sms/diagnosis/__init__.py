@@ -1,0 +1,14 @@
+"""What a simulation gets wrong, and why: the method, step by step.
+
+prepare     the measured records as the core's problem: motion derived, strokes found
+catalogue   the effects that can be named (catalogue.toml)
+statistics  judgements that respect coloured residuals: strokes are the unit, not samples
+search      baseline fit, screening, held-out judgement, classes, round by round
+method      the whole method, from a rig file to a Diagnosis (result.py)
+report, console   the answer for people
+"""
+
+from sms.diagnosis.method import diagnose
+from sms.diagnosis.result import Diagnosis
+
+__all__ = ["Diagnosis", "diagnose"]

@@ -1,0 +1,117 @@
+"""The diagnosis as one HTML file: no network, no server, readable without a manual."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+
+from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
+
+from sms.diagnosis.result import Diagnosis
+from sms.report import curves, related, search, verdict, worth
+from sms.report.markup import esc, section
+
+# The browser itself refuses to load anything from elsewhere.
+_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
+)
+
+
+def report_html(diagnosis: Diagnosis) -> str:
+    """The whole page as text, about 5 to 8 MB, of which plotly.js is 4.8 MB.
+
+    The order is that of a reader's questions: what is wrong and how much, what is it worth, can I
+    see it, what else was tried, what is left, what next, and what does all of it rest on.
+    """
+    parts = {
+        "conclusion": ("Conclusion", verdict.conclusion(diagnosis)),
+        "curves": ("Curves", _curves(diagnosis)),
+        "residual": ("Residual", _residuals(diagnosis)),
+        "related": ("Related rigs", related.related(diagnosis)),
+        "candidates": ("What was tried", search.candidates(diagnosis)),
+        "not-testable": ("Not testable", search.not_testable(diagnosis)),
+        "left": ("What is left", worth.remainder(diagnosis)),
+        "next": ("Next measurement", worth.next_experiment(diagnosis)),
+        "data-check": ("Data check", search.findings(diagnosis)),
+        "provenance": ("Provenance", search.provenance(diagnosis)),
+    }
+    if diagnosis.verdict == "data-fault":
+        parts = {"data-check": parts.pop("data-check")} | parts
+        nothing = {
+            "candidates": not diagnosis.candidates,
+            "not-testable": not diagnosis.not_testable,
+            "left": diagnosis.remainder is None,
+            "next": diagnosis.next_experiment is None,
+        }
+        parts = {name: part for name, part in parts.items() if not nothing.get(name)}
+    links = "".join(
+        f'<a href="#{name}">{title}</a>' for name, (title, text) in parts.items() if text
+    )
+    body = (
+        '<main><div class="top">'
+        f"{verdict.header(diagnosis)}{verdict.causes(diagnosis)}{worth.gain(diagnosis)}</div>"
+        f'<nav aria-label="Parts of this page">{links}</nav>'
+        f"{''.join(content for _, content in parts.values())}</main>"
+    )
+    return _page(diagnosis.title or diagnosis.rig, body, _script(diagnosis))
+
+
+def _page(title: str, body: str, script: str) -> str:
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>Diagnosis: {esc(title)}</title><style>{_asset('style.css')}</style></head>"
+        f"<body>{body}{script}</body></html>\n"
+    )
+
+
+def _asset(name: str) -> str:
+    return files("sms.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _script(diagnosis: Diagnosis) -> str:
+    """Plotly, the curves and what draws them; nothing when there are no curves."""
+    if not diagnosis.series:
+        return ""
+    data = json.dumps(curves.payload(diagnosis), allow_nan=False).replace("<", "\\u003c")
+    return (
+        f"<script>{get_plotlyjs()}</script>"
+        f'<script type="application/json" id="curve-data">{data}</script>'
+        f"<script>{_asset('figures.js')}</script>"
+    )
+
+
+def _curves(diagnosis: Diagnosis) -> str:
+    if not diagnosis.series:
+        return ""
+    lead = (
+        "Above the signal, below the error (measured less simulated) on the same axis, with the "
+        "noise floor as a band. Rows that are not compared, such as standstill, show the "
+        "measurement alone. Over the extension, the strokes lie on top of each other."
+    )
+    body = (
+        f"{worth.key(diagnosis, 'measured', 'baseline', 'extended', 'floor')}"
+        '<div class="buttons" id="records" role="group" aria-label="Record"></div>'
+        '<div class="buttons" id="views" role="group" aria-label="Horizontal axis"></div>'
+        '<div id="lines" role="img" aria-label="Measured, baseline and extended, with the errors">'
+        "</div>"
+    )
+    return section("curves", "Measured and simulated", body, lead)
+
+
+def _residuals(diagnosis: Diagnosis) -> str:
+    if not diagnosis.series:
+        return ""
+    lead = (
+        "The error of the compared rows against each signal. Triangles are means, pointing up "
+        "while extending and down while retracting. Means that lie flat on zero leave nothing to "
+        "explain along that signal. Two directions that part point to friction, two that move "
+        "together to a force or a sensor."
+    )
+    body = (
+        f"{worth.key(diagnosis, 'baseline', 'extended')}"
+        '<div class="buttons" id="groups" role="group" aria-label="Records shown"></div>'
+        '<div id="residuals"></div>'
+    )
+    return section("residual", "Where the error lies", body, lead)

@@ -1,0 +1,1 @@
+"""The parts of the HTML page of a diagnosis; sms.diagnosis.report puts them together."""

@@ -1,0 +1,173 @@
+"""What the extension is worth on unseen records, what is left, and what to measure next."""
+
+from __future__ import annotations
+
+from sms.diagnosis.result import Diagnosis, Gain, Remainder
+from sms.diagnosis.words import ARRANGED
+from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch
+from sms.units_display import (
+    capital,
+    format_aligned,
+    format_interval,
+    format_percent,
+    format_quantity,
+    words,
+)
+
+_LEGEND = (
+    ("measured", "Measured", "the record"),
+    (
+        "baseline",
+        "Baseline",
+        "the simulation after every parameter was fitted within its declared uncertainty",
+    ),
+    ("extended", "Extended", "the same with the causes named here"),
+    ("floor", "Noise floor", "what does not repeat from stroke to stroke: no model can explain it"),
+)
+
+
+def key(diagnosis: Diagnosis, *kinds: str) -> str:
+    """The colours alone, beside a figure that shows these kinds."""
+    items = "".join(
+        f"<span>{swatch(kind)}{name}</span>"
+        for kind, name, _ in _LEGEND
+        if kind in kinds and (diagnosis.causes or kind != "extended")
+    )
+    return f'<p class="key">{items}</p>'
+
+
+def legend(diagnosis: Diagnosis) -> str:
+    """The words and colours used on the whole page; without a cause there is no extended model."""
+    items = "".join(
+        f"<dt>{swatch(kind)}{name}</dt><dd>{text}</dd>"
+        for kind, name, text in _LEGEND
+        if diagnosis.causes or kind != "extended"
+    )
+    if not diagnosis.gain and not diagnosis.series:
+        return ""
+    return f'<dl class="legend">{items}</dl>'
+
+
+def gain(diagnosis: Diagnosis) -> str:
+    """Error before and after on each validate record, as bars with interval."""
+    title = "What it is worth" if diagnosis.causes else "How far off the simulation is"
+    if not diagnosis.gain:
+        return section("worth", title, empty("No record was judged, so no gain is claimed."))
+    tops: dict[str, float] = {}
+    for g in diagnosis.gain:
+        ends = Scale.over([0.0, tops.get(g.unit, 0.0), g.baseline_rms, *_interval(g)])
+        tops[g.unit] = 1.02 * ends.high
+    rows = "".join(
+        _gain_rows(g, Scale(0.0, tops[g.unit]), bool(diagnosis.causes)) for g in diagnosis.gain
+    )
+    interval = "; whisker and brackets: 95 % interval" if diagnosis.causes else ""
+    body = (
+        '<table class="gain"><caption>RMS error on records that the fit has not seen'
+        f"{interval}</caption>{rows}</table>"
+    )
+    return section("worth", title, body)
+
+
+def _interval(g: Gain) -> tuple[float, float]:
+    """The extended model's RMS error, 95 percent interval."""
+    return (
+        g.baseline_rms * (1.0 - g.reduction_high),
+        g.baseline_rms * (1.0 - g.reduction_low),
+    )
+
+
+def _gain_rows(g: Gain, scale: Scale, extended: bool) -> str:
+    bars: list[tuple[str, float, tuple[float, float] | None]] = [
+        ("baseline", g.baseline_rms, None),
+        ("extended", g.extended_rms, _interval(g)),
+        ("floor", g.noise_floor, None),
+    ]
+    names = {"baseline": "Baseline", "extended": "Extended", "floor": "Noise floor"}
+    if not extended:
+        del bars[1]
+    texts = format_aligned([value for _, value, _ in bars], g.unit)
+    lines = "".join(
+        f'<tr><th scope="row">{swatch(kind)}{names[kind]}</th>'
+        f"<td>{bar(scale, value, kind, interval, marks=())}</td>"
+        f'<td class="number">{esc(text)}</td></tr>'
+        for (kind, value, interval), text in zip(bars, texts, strict=True)
+    )
+    within = format_interval(-g.reduction_high, -g.reduction_low, signed=True)
+    change = (
+        f'<span class="reduction">{esc(format_percent(-g.reduction, signed=True))}</span> '
+        f'<span class="small">({esc(within)})</span>'
+        if extended
+        else ""
+    )
+    head = (
+        f'<tr><th scope="rowgroup" colspan="3"><strong>{esc(g.record)}</strong>, '
+        f"{esc(words(g.signal))} {change}</th></tr>"
+    )
+    return f"<tbody>{head}{lines}</tbody>"
+
+
+def remainder(diagnosis: Diagnosis) -> str:
+    """What is still unexplained: its size, whether it repeats, and where it lies."""
+    title, left = "What is left", diagnosis.remainder
+    floors = " and ".join(
+        f"{text} from {words(name)} to {words(name)}"
+        for name, text in zip(
+            diagnosis.noise_floor,
+            format_aligned(list(diagnosis.noise_floor.values()), _unit(diagnosis)),
+            strict=True,
+        )
+    )
+    noise = f"<p>The measurement itself scatters by {esc(floors)} (RMS).</p>" if floors else ""
+    if left is None:
+        return section("left", title, empty("The remainder was not examined.") + noise)
+    sentence = (
+        f"{format_quantity(left.rms, left.unit)} RMS is unexplained on the validate records: "
+        f"{format_percent(left.share_of_excess)} of the baseline's reproducible squared error. "
+        f"Of what is left, {format_percent(left.repeats)} repeats from stroke to stroke, "
+        "which is what a better model could still take."
+    )
+    shares = _shares(left, "extended" if diagnosis.causes else "baseline")
+    return section("left", title, f"<p>{esc(sentence)}</p>{noise}{shares}")
+
+
+def _shares(left: Remainder, css: str) -> str:
+    """Where the remainder sits, the largest part first."""
+    if not left.shares:
+        return ""
+    scale = Scale(0.0, 1.0)
+    rows = "".join(
+        f'<tr><th scope="row">{esc(capital(ARRANGED.get(name, name)))}</th>'
+        f"<td>{bar(scale, share, css)}</td>"
+        f'<td class="number">{esc(format_percent(share))}</td>'
+        f'<td class="number">{esc(format_quantity(left.rms * max(share, 0.0) ** 0.5, left.unit))}'
+        "</td></tr>"
+        for name, share in sorted(left.shares.items(), key=lambda item: item[1], reverse=True)
+    )
+    head = "".join(f'<th scope="col">{text}</th>' for text in ("Where", "", "Share", "RMS"))
+    return (
+        '<table class="shares"><caption>Where the remaining squared error sits; '
+        "the shares add up to all of it</caption>"
+        f"<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+    )
+
+
+def _unit(diagnosis: Diagnosis) -> str:
+    """The unit of the noise floor: that of the signal judged."""
+    units = {g.unit for g in diagnosis.gain} | {s.unit for s in diagnosis.series}
+    return units.pop() if len(units) == 1 else "N"
+
+
+def next_experiment(diagnosis: Diagnosis) -> str:
+    """The measurement that would teach most."""
+    title, plan = "What to measure next", diagnosis.next_experiment
+    if plan is None:
+        return section("next", title, empty("No further measurement is proposed."))
+    parts = [_identifier_label(identifier) for identifier in plan.separates]
+    separates = f"<p>It would separate: {', '.join(parts)}.</p>" if parts else ""
+    body = f"<h3>{esc(capital(plan.title))}</h3><p>{esc(plan.purpose)}</p>{separates}"
+    return section("next", title, f'<div class="card plan">{body}</div>')
+
+
+def _identifier_label(identifier: str) -> str:
+    effect, _, signal = identifier.replace(":", " ").partition(" ")
+    return effect_label(effect, signal or None)

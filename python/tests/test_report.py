@@ -1,0 +1,242 @@
+"""The page and the console table: complete, self-contained, and unshaken by what is missing."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import re
+from dataclasses import replace
+from functools import cache
+from html.parser import HTMLParser
+from typing import Any
+
+import numpy as np
+import pytest
+from report_support import VERDICTS, cylinder_series, diagnosis, emptied, without_numbers
+from rich.console import Console
+from sms.diagnosis.console import print_diagnosis
+from sms.diagnosis.report import report_html
+from sms.diagnosis.result import Diagnosis, Verdict
+from sms.report.curves import LINE_POINTS, payload, thin
+from sms.report.verdict import VERDICT_WORDS
+
+LARGEST_PAGE = 8.5e6  # bytes
+
+
+# ---- reading the page back ----------------------------------------------------------------------
+
+
+class Page(HTMLParser):
+    """Collects what a test asks of a page; fails on tags that do not close."""
+
+    VOID = frozenset({"meta", "br"})
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+        self.scripts: list[str] = []
+        self.feed(page)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] == "script":
+            self.scripts.append(data)
+        elif self.open and self.open[-1] != "style":
+            self.text += data
+
+    def values(self, attribute: str) -> set[str]:
+        return {found for _, attrs in self.tags if (found := attrs.get(attribute)) is not None}
+
+
+def decode(text: str) -> np.ndarray[Any, np.dtype[np.float32]]:
+    return np.frombuffer(base64.b64decode(text), "<f4")
+
+
+def printed(d: Diagnosis, width: int = 80) -> str:
+    out = io.StringIO()
+    print_diagnosis(d, Console(file=out, width=width, color_system=None))
+    return out.getvalue()
+
+
+def flat(text: str) -> str:
+    """Without the frame and line breaks that the console puts between words."""
+    return " ".join(re.sub(r"[│╭╮╰╯─]", " ", text).split())
+
+
+@cache
+def html_of(verdict: Verdict) -> str:
+    return report_html(diagnosis(verdict))
+
+
+@cache
+def page_of(verdict: Verdict) -> Page:
+    return Page(html_of(verdict))
+
+
+# ---- the page -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_page_says_everything(verdict: Verdict) -> None:
+    d = diagnosis(verdict)
+    page = Page(report_html(d))
+    assert page.values("data-verdict") == {verdict}
+    assert VERDICT_WORDS[verdict] in page.text
+    assert d.sentence in page.text
+    named = [(c.effect, c.signal) for c in d.causes]
+    named += [(m.effect, m.signal) for c in d.causes for m in c.alternatives]
+    named += [(c.effect, c.signal) for c in d.candidates]
+    named += [(n.effect, n.signal) for n in d.not_testable]
+    for effect, signal in named:
+        assert effect + (f" {signal}" if signal else "") in page.values("data-effect")
+    for finding in d.findings:
+        assert finding.message in page.text and finding.remedy in page.text
+    for text in (*d.conclusion, *(n.reason for n in d.not_testable), *d.records, "0.1.0"):
+        assert text in page.text
+    anchors = {link.removeprefix("#") for link in page.values("href")}
+    assert anchors <= page.values("id")
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_page_loads_nothing_from_elsewhere(verdict: Verdict) -> None:
+    html, page = html_of(verdict), page_of(verdict)
+    assert {tag for tag, _ in page.tags}.isdisjoint({"link", "img", "iframe", "object", "embed"})
+    assert not page.values("src")
+    assert all(link.startswith("#") for link in page.values("href"))
+    style = html[html.index("<style>") : html.index("</style>")]
+    assert "url(" not in style and "@import" not in style
+    assert "default-src 'none'" in html
+    assert len(html.encode()) < LARGEST_PAGE
+    drawn = [script for script in page.scripts if "Plotly.react" in script]
+    assert len(drawn) == (0 if verdict == "data-fault" else 1)
+
+
+def test_numbers_are_in_engineering_units() -> None:
+    text = page_of("combination").text
+    for shown in ("0.750 ± 0.014 N per bar", "+0.870 ± 0.030 %", "25.0000 → 25.1080 ± 0.0039 mm"):
+        assert shown in text
+    assert "Hang a known weight" in text and "or one of 2 rivals" in text
+
+
+@pytest.mark.parametrize("verdict", ["no-evidence", "unknown"])
+def test_without_a_cause_there_is_no_extended_model(verdict: Verdict) -> None:
+    page = page_of(verdict)
+    assert not re.search(r"Extended\b", page.text)
+    curves = next(json.loads(s) for s in page.scripts if s.startswith('{"extended"'))
+    assert curves["extended"] is False
+
+
+def test_a_fault_in_the_data_comes_first() -> None:
+    html = html_of("data-fault")
+    assert html.index('id="data-check"') < html.index('id="provenance"')
+    assert "What was tried" not in html
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_nothing_and_nan_do_no_harm(verdict: Verdict) -> None:
+    for d in (emptied(diagnosis(verdict)), without_numbers(diagnosis(verdict))):
+        page = Page(report_html(d))
+        assert VERDICT_WORDS[verdict] in page.text
+        assert not re.search(r"\b(nan|inf|None)\b", page.text)
+        console = printed(d)
+        assert VERDICT_WORDS[verdict] in console
+        assert not re.search(r"\b(nan|inf|None)\b", console)
+
+
+def test_text_cannot_become_markup() -> None:
+    evil = "</script><script>alert(1)</script>"
+    d = replace(diagnosis("combination"), title=evil, sentence=evil, rig=evil, conclusion=(evil,))
+    d = replace(d, series=tuple(replace(s, record=evil) for s in d.series))
+    page = Page(report_html(d))
+    assert sum(tag == "script" for tag, _ in page.tags) == 3
+    assert evil in page.text
+
+
+# ---- the curves ---------------------------------------------------------------------------------
+
+
+def test_curves_carry_the_numbers() -> None:
+    d = diagnosis("combination")
+    data = payload(d)
+    assert [r["label"] for r in data["records"]] == ["3 bar", "7 bar", "1 bar", "5 bar"]
+    first, s = data["records"][0], d.series[2]
+    np.testing.assert_allclose(decode(first["measured"]), s.measured, rtol=1e-6)
+    drawn = decode(first["baseline"])
+    np.testing.assert_array_equal(np.isnan(drawn), ~s.used)
+    np.testing.assert_allclose(
+        decode(first["views"][1]["x"]), 1e3 * s.inputs["extension [m]"], 1e-6
+    )
+    assert first["floor"] == 0.3 and data["records"][2]["floor"] is None
+    group = data["groups"][0]
+    titles = [panel["title"] for panel in group["panels"]]
+    assert group["label"] == "all records"
+    names = ["extension [mm]", "velocity [mm/s]", "chamber pressure lower [bar]", "direction"]
+    assert titles == [*names, "time [s]"]
+
+
+def test_means_show_friction_that_grows_with_pressure_in_each_direction() -> None:
+    panel = payload(diagnosis("combination"))["groups"][0]["panels"][2]
+    up, down = panel["baseline"]["means"]
+    assert (up["side"], down["side"]) == ("extending", "retracting")
+    gap = decode(up["y"]) - decode(down["y"])
+    assert gap[-1] - gap[0] == pytest.approx(-2.0 * 0.75 * 6.0, abs=0.2)
+    after = panel["extended"]["means"]
+    assert max(np.abs(decode(side["y"])).max() for side in after) < 0.1
+
+
+def test_a_jump_of_time_interrupts_the_line() -> None:
+    s = cylinder_series("1 bar", "identify", 1e5, rows=100)
+    s = replace(s, time=np.where(np.arange(100) < 40, s.time, s.time + 5.0))
+    measured = decode(payload(replace(diagnosis("cause"), series=(s,)))["records"][0]["measured"])
+    assert np.flatnonzero(np.isnan(measured)).tolist() == [40]
+
+
+def test_thinning_keeps_extremes_within_its_budget() -> None:
+    curve = np.sin(np.linspace(0.0, 50.0, 100_000))
+    curve[77_777], curve[12_345] = 9.0, -9.0
+    keep = thin((curve, -curve), 1000)
+    assert keep.size <= 1000 and {77_777, 12_345} <= set(keep.tolist())
+    assert np.all(np.diff(keep) > 0)
+    assert thin((curve[:500],), 1000).tolist() == list(range(500))
+    assert thin((np.full(5000, np.nan),), 100).size <= 100
+
+
+def test_long_records_do_not_make_a_large_page() -> None:
+    long = cylinder_series("long", "validate", 3e5, rows=50_000)
+    series = tuple(replace(long, record=f"record {k}") for k in range(30))
+    d = replace(diagnosis("combination"), series=series)
+    rows = sum(decode(r["measured"]).size for r in payload(d)["records"])
+    assert rows <= LINE_POINTS
+    assert len(report_html(d).encode()) < LARGEST_PAGE
+
+
+# ---- the console --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("width", [80, 120])
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_console(verdict: Verdict, width: int) -> None:
+    d = diagnosis(verdict)
+    text = printed(d, width)
+    assert all(len(line) <= width for line in text.splitlines())
+    assert VERDICT_WORDS[verdict] in text and d.sentence in flat(text)
+    assert len(text.splitlines()) < 40
+    for cause in d.causes:
+        for title in (cause.title, *(m.title for m in cause.alternatives)):
+            assert title.lower() in flat(text).lower()
+    if d.causes:
+        assert "−62 %" in text and "1.10 N" in text
+    if verdict == "data-fault":
+        assert "line 412" in text and "mend the cable" in flat(text)
