@@ -14,11 +14,11 @@ import tempfile
 from pathlib import Path
 
 from rich.console import Console
-
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.console import print_diagnosis
 from sms.diagnosis.files import check_output_folder, write_diagnosis
 from sms.io.errors import InputError
+
 from validation.hidden_effects import effects
 from validation.hidden_effects.draw import draw, open_truth
 from validation.hidden_effects.trial import key_of

@@ -16,7 +16,9 @@ from sms.io.errors import InputError
 
 app = typer.Typer(
     help="Pneumatic motion platform: what measured data says about its simulation.",
-    no_args_is_help=True, add_completion=False, rich_markup_mode="markdown",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="markdown",
 )
 BAD_INPUT = 2
 
@@ -28,21 +30,39 @@ def _version(wanted: bool) -> None:
 
 
 @app.callback()
-def _sms(version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True,
-                                               help="Print the version and stop.")] = False) -> None:
+def _sms(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_version, is_eager=True, help="Print the version and stop."
+        ),
+    ] = False,
+) -> None:
     pass
 
 
-@app.command(epilog="Example: **sms diagnose cylinder_o_ring.toml --out report** reads the rig file, finds what its "
-                    "model gets wrong on the records it lists, and writes report/report.html (look at it in a "
-                    "browser), report/diagnosis.json (for programs) and report/extended.toml (the rig file with the "
-                    "causes built in; diagnose accepts it again).")
+@app.command(
+    epilog="Example: **sms diagnose cylinder_o_ring.toml --out report** reads the rig file, finds what its "
+    "model gets wrong on the records it lists, and writes report/report.html (look at it in a "
+    "browser), report/diagnosis.json (for programs) and report/extended.toml (the rig file with the "
+    "causes built in; diagnose accepts it again)."
+)
 def diagnose(
-    rig: Annotated[Path, typer.Argument(help="The rig file (TOML): what was measured, what is known, which records.")],
-    out: Annotated[Path, typer.Option(help="Folder for report.html, diagnosis.json and extended.toml.")] =
-        Path("diagnosis"),
-    seed: Annotated[int, typer.Option(help="Seed of the resampling; the same seed gives the same answer.")] = 1,
-    as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of the table.")] = False,
+    rig: Annotated[
+        Path,
+        typer.Argument(
+            help="The rig file (TOML): what was measured, what is known, which records."
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Option(help="Folder for report.html, diagnosis.json and extended.toml.")
+    ] = Path("diagnosis"),
+    seed: Annotated[
+        int, typer.Option(help="Seed of the resampling; the same seed gives the same answer.")
+    ] = 1,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print diagnosis.json instead of the table.")
+    ] = False,
 ) -> None:
     """Find what the simulation of a rig gets wrong, name the cause, extend the model, measure the gain.
 
@@ -59,7 +79,9 @@ def diagnose(
     columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn()
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("reading records", total=1.0)
-        answer = run(rig, seed, lambda text, done: progress.update(task, description=text, completed=done))
+        answer = run(
+            rig, seed, lambda text, done: progress.update(task, description=text, completed=done)
+        )
         progress.update(task, description="writing the report", completed=0.95)
         files = write_diagnosis(answer, rig, out)
     if as_json:

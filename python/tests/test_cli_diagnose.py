@@ -13,8 +13,14 @@ from test_diagnosis_method import make_rig
 
 
 def sms(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, "-m", "sms.cli", *arguments], cwd=cwd, capture_output=True, text=True,
-                          check=False, env=os.environ | {"COLUMNS": "100"})
+    return subprocess.run(
+        [sys.executable, "-m", "sms.cli", *arguments],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"COLUMNS": "100"},
+    )
 
 
 def refused(result: subprocess.CompletedProcess[str], *words: str) -> None:
@@ -31,13 +37,19 @@ def test_a_diagnosis_writes_three_files_and_prints_the_verdict(tmp_path: Path) -
     result = sms("diagnose", "rig.toml", "--out", "report", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert "seal friction that grows with pressure" in result.stdout
-    assert sorted(p.name for p in (tmp_path / "report").iterdir()) == ["diagnosis.json", "extended.toml", "report.html"]
+    assert sorted(p.name for p in (tmp_path / "report").iterdir()) == [
+        "diagnosis.json",
+        "extended.toml",
+        "report.html",
+    ]
     data = json.loads((tmp_path / "report" / "diagnosis.json").read_text())
     assert data["verdict"] == "cause"
     assert data["causes"][0]["effect"] == "pressure_dependent_friction"
     assert {"effect", "members", "block", "parameters"} <= set(data["causes"][0])
     assert {"value", "standard_error", "unit"} <= set(data["causes"][0]["parameters"][0])
-    assert {"candidates", "not_testable", "gain", "next_experiment", "versions", "seed"} <= set(data)
+    assert {"candidates", "not_testable", "gain", "next_experiment", "versions", "seed"} <= set(
+        data
+    )
     assert "<script src" not in (tmp_path / "report" / "report.html").read_text()
     again = sms("diagnose", "report/extended.toml", "--json", "--out", "again", cwd=tmp_path)
     assert json.loads(again.stdout)["verdict"] == "no-evidence"
@@ -56,11 +68,16 @@ def test_a_misspelt_key_is_met_with_the_right_one(tmp_path: Path) -> None:
     refused(sms("diagnose", "rig.toml", cwd=tmp_path), "coulomb_forse", "coulomb_force", "rig.toml")
 
 
-@pytest.mark.parametrize("name, content, words", [
-    ("missing.toml", None, ("missing.toml",)),
-    ("empty.toml", "", ("empty.toml",)),
-])
-def test_no_rig_file(tmp_path: Path, name: str, content: str | None, words: tuple[str, ...]) -> None:
+@pytest.mark.parametrize(
+    "name, content, words",
+    [
+        ("missing.toml", None, ("missing.toml",)),
+        ("empty.toml", "", ("empty.toml",)),
+    ],
+)
+def test_no_rig_file(
+    tmp_path: Path, name: str, content: str | None, words: tuple[str, ...]
+) -> None:
     if content is not None:
         (tmp_path / name).write_text(content)
     refused(sms("diagnose", name, cwd=tmp_path), *words)
@@ -94,5 +111,7 @@ def test_an_output_folder_that_cannot_be_written_is_said_before_the_work(tmp_pat
     rig = make_rig(tmp_path)
     (tmp_path / "taken").write_text("a file")
     refused(sms("diagnose", rig.name, "--out", "taken", cwd=tmp_path), "taken", "not a folder")
-    refused(sms("diagnose", rig.name, "--out", "taken/below", cwd=tmp_path), "taken", "not a folder")
+    refused(
+        sms("diagnose", rig.name, "--out", "taken/below", cwd=tmp_path), "taken", "not a folder"
+    )
     assert (tmp_path / "taken").read_text() == "a file"

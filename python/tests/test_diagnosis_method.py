@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from sms import _core
 from sms.diagnosis import diagnose
 from sms.diagnosis.catalogue import catalogue
@@ -35,14 +34,29 @@ coulomb_force = {{ fit = true, value = "5 N" }}
 viscous_friction = {{ value = "0 N s/m", uncertainty = "0 N s/m" }}
 stribeck_acceleration_factor = {{ value = "0 s^2/m", uncertainty = "0 s^2/m" }}
 """
-RECORDS = (("1_bar", 1e5, "identify"), ("5_bar", 5e5, "identify"), ("3_bar", 3e5, "validate"), ("7_bar", 7e5, "validate"))
+RECORDS = (
+    ("1_bar", 1e5, "identify"),
+    ("5_bar", 5e5, "identify"),
+    ("3_bar", 3e5, "validate"),
+    ("7_bar", 7e5, "validate"),
+)
 
 
-def make_rig(folder: Path, bore_uncertainty: str = "0.001 mm", extra_force: float = 0.0, **truth: float) -> Path:
+def make_rig(
+    folder: Path, bore_uncertainty: str = "0.001 mm", extra_force: float = 0.0, **truth: float
+) -> Path:
     """Records of slow strokes whose forces come from the core with the parameters `truth`; noise 0.2 N."""
     rng = np.random.default_rng(SEED)
-    known = {"bore_diameter": 0.025, "rod_diameter": 0.0, "stroke": 0.06, "moving_mass": 0.1, "ambient_pressure": 1e5,
-             "coulomb_force": 6.0, "viscous_friction": 0.0, "stribeck_acceleration_factor": 0.0}
+    known = {
+        "bore_diameter": 0.025,
+        "rod_diameter": 0.0,
+        "stroke": 0.06,
+        "moving_mass": 0.1,
+        "ambient_pressure": 1e5,
+        "coulomb_force": 6.0,
+        "viscous_friction": 0.0,
+        "stribeck_acceleration_factor": 0.0,
+    }
     params = _core.Params(**(known | truth))
     text = RIG.format(bore_uncertainty=bore_uncertainty)
     time = np.arange(0.0, 40.0, 0.01)
@@ -52,10 +66,20 @@ def make_rig(folder: Path, bore_uncertainty: str = "0.001 mm", extra_force: floa
     for name, gauge, role in RECORDS:
         pressure = np.full(len(time), gauge + 1e5)
         force = _core.rod_force(params, extension, velocity, acceleration, pressure, 1e5)
-        force = force + rng.normal(0.0, 0.2, len(time)) + extra_force * np.sin(2.0 * np.pi * extension / 0.003)
-        write_record(folder / f"{name}.csv", {
-            "time": time, "extension": extension + rng.normal(0.0, 2e-6, len(time)),
-            "chamber_pressure_lower": pressure + rng.normal(0.0, 100.0, len(time)), "rod_force": force})
+        force = (
+            force
+            + rng.normal(0.0, 0.2, len(time))
+            + extra_force * np.sin(2.0 * np.pi * extension / 0.003)
+        )
+        write_record(
+            folder / f"{name}.csv",
+            {
+                "time": time,
+                "extension": extension + rng.normal(0.0, 2e-6, len(time)),
+                "chamber_pressure_lower": pressure + rng.normal(0.0, 100.0, len(time)),
+                "rod_force": force,
+            },
+        )
         text += f'\n[[records]]\nfile = "{name}.csv"\nrole = "{role}"\n'
     (folder / "rig.toml").write_text(text)
     return folder / "rig.toml"
@@ -72,30 +96,41 @@ def test_same_seed_same_answer(tmp_path: Path) -> None:
     assert diagnose(rig, 5).to_dict() == diagnose(rig, 5).to_dict()
 
 
-@pytest.mark.parametrize("parameter, value, effect", [
-    ("pressure_friction", 2e-6, "pressure_dependent_friction"),
-    ("position_friction", 4.0, "position_dependent_friction"),
-    ("direction_friction", 0.3, "direction_dependent_friction"),
-])
-def test_a_missing_term_is_named_with_its_size(tmp_path: Path, parameter: str, value: float, effect: str) -> None:
+@pytest.mark.parametrize(
+    "parameter, value, effect",
+    [
+        ("pressure_friction", 2e-6, "pressure_dependent_friction"),
+        ("position_friction", 4.0, "position_dependent_friction"),
+        ("direction_friction", 0.3, "direction_dependent_friction"),
+    ],
+)
+def test_a_missing_term_is_named_with_its_size(
+    tmp_path: Path, parameter: str, value: float, effect: str
+) -> None:
     answer = diagnose(make_rig(tmp_path, **{parameter: value}))
     assert len(answer.causes) == 1
     assert effect in answer.causes[0].members
     found = {p.name: p for p in answer.causes[0].parameters}
     for member in answer.causes[0].alternatives:
         found |= {p.name: p for p in member.parameters}
-    assert abs(found[parameter].value - value) < 4.0 * found[parameter].standard_error + 0.02 * abs(value)
+    assert abs(found[parameter].value - value) < 4.0 * found[parameter].standard_error + 0.02 * abs(
+        value
+    )
     assert all(g.reduction_low > 0.0 for g in answer.gain if g.baseline_rms > 1.1 * g.noise_floor)
 
 
-def test_a_shift_beyond_the_declared_uncertainty_is_a_cause_and_one_within_is_not(tmp_path: Path) -> None:
+def test_a_shift_beyond_the_declared_uncertainty_is_a_cause_and_one_within_is_not(
+    tmp_path: Path,
+) -> None:
     beyond, within = tmp_path / "beyond", tmp_path / "within"
     beyond.mkdir()
     within.mkdir()
     answer = diagnose(make_rig(beyond, bore_diameter=0.0251))
     assert answer.verdict == "class"
     assert "bore_diameter" in answer.causes[0].members
-    shift = next(p for a in answer.causes[0].alternatives for p in a.parameters if p.name == "bore_diameter")
+    shift = next(
+        p for a in answer.causes[0].alternatives for p in a.parameters if p.name == "bore_diameter"
+    )
     assert shift.old_value == 0.025
     assert shift.value == pytest.approx(0.0251, rel=1e-4)
     assert diagnose(make_rig(within, "0.2 mm", bore_diameter=0.0251)).verdict == "no-evidence"
@@ -104,15 +139,23 @@ def test_a_shift_beyond_the_declared_uncertainty_is_a_cause_and_one_within_is_no
 def test_two_effects_are_a_combination(tmp_path: Path) -> None:
     answer = diagnose(make_rig(tmp_path, pressure_friction=3e-6, position_friction=6.0))
     assert answer.verdict == "combination"
-    assert {c.effect for c in answer.causes} == {"pressure_dependent_friction", "position_dependent_friction"}
+    assert {c.effect for c in answer.causes} == {
+        "pressure_dependent_friction",
+        "position_dependent_friction",
+    }
 
 
 def test_what_the_catalogue_does_not_know_is_unknown(tmp_path: Path) -> None:
     answer = diagnose(make_rig(tmp_path, extra_force=0.4))
     assert (answer.verdict, answer.causes) == ("unknown", ())
     assert answer.remainder is not None
-    assert max(answer.remainder.shares, key=lambda k: answer.remainder.shares[k] if k != "does not repeat" else 0.0) \
+    assert (
+        max(
+            answer.remainder.shares,
+            key=lambda k: answer.remainder.shares[k] if k != "does not repeat" else 0.0,
+        )
         == "extension"
+    )
     assert answer.next_experiment is not None
 
 
@@ -130,7 +173,10 @@ def test_slow_strokes_say_nothing_of_viscous_friction(tmp_path: Path) -> None:
     blind = {n.effect: n.reason for n in diagnose(make_rig(tmp_path)).not_testable}
     assert "a decade is needed" in blind["viscous_friction"]
     assert "upper is not measured" in next(
-        n.reason for n in diagnose(tmp_path / "rig.toml").not_testable if n.signal == "chamber_pressure_upper")
+        n.reason
+        for n in diagnose(tmp_path / "rig.toml").not_testable
+        if n.signal == "chamber_pressure_upper"
+    )
 
 
 def test_a_stuck_channel_is_a_data_fault(tmp_path: Path) -> None:
@@ -150,7 +196,10 @@ def test_a_stuck_channel_is_a_data_fault(tmp_path: Path) -> None:
 
 def test_one_record_only_is_refused(tmp_path: Path) -> None:
     rig = make_rig(tmp_path)
-    rig.write_text(rig.read_text().split("[[records]]")[0] + '[[records]]\nfile = "1_bar.csv"\nrole = "identify"\n')
+    rig.write_text(
+        rig.read_text().split("[[records]]")[0]
+        + '[[records]]\nfile = "1_bar.csv"\nrole = "identify"\n'
+    )
     with pytest.raises(InputError, match="nothing to judge on"):
         diagnose(rig)
 
@@ -186,7 +235,9 @@ def test_strokes_are_runs_in_one_direction() -> None:
     assert list(stroke[[0, 24, 27, 30, 39, 40, 54, 57]]) == [0, 0, -1, 1, 1, 2, 2, -1]
 
 
-def test_a_screw_pitch_is_found_in_what_is_left_and_none_where_there_is_none(tmp_path: Path) -> None:
+def test_a_screw_pitch_is_found_in_what_is_left_and_none_where_there_is_none(
+    tmp_path: Path,
+) -> None:
     with_screw, without = tmp_path / "with", tmp_path / "without"
     with_screw.mkdir()
     without.mkdir()

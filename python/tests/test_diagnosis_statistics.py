@@ -1,15 +1,14 @@
-"""Judgements on coloured residuals: false alarms stay rare where counting samples fails, and the sizes come out right."""
+"""Judgements on coloured residuals: false alarms stay rare where counting samples fails; sizes come out right."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-
+from sms.diagnosis.repeatability import repeatability
 from sms.diagnosis.statistics import (
     covariance_of,
-    project_off,
-    repeatability,
     merge_strokes,
+    project_off,
     resampled,
     score_test,
     strokes_per_block,
@@ -49,8 +48,12 @@ def test_healthy_but_coloured_data_names_nothing(rng: np.random.Generator) -> No
         block = merge_strokes(record, stroke, strokes_per_block(residual, record, stroke))
         alarms += bool(np.min(score_test(columns, residual, block, rng, draws=999).p_value) < 0.05)
         naive = np.abs(columns.T @ residual) / np.linalg.norm(columns, axis=0) / residual.std()
-        naive_alarms += bool(np.max(naive) > 3.1)  # Bonferroni at 5 percent, samples taken as independent
-    assert naive_alarms >= 0.95 * repeats, "the data would not fool a naive test: nothing is shown here"
+        naive_alarms += bool(
+            np.max(naive) > 3.1
+        )  # Bonferroni at 5 percent, samples taken as independent
+    assert naive_alarms >= 0.95 * repeats, (
+        "the data would not fool a naive test: nothing is shown here"
+    )
     assert alarms <= 9, f"{alarms} alarms in {repeats}, 3 are expected"
 
 
@@ -90,7 +93,9 @@ def simulated_strokes(rng: np.random.Generator) -> tuple[np.ndarray, ...]:
     stroke = np.repeat(np.arange(strokes * records), samples)
     record = stroke // strokes
     direction = np.where(stroke % 2 == 0, 1.0, -1.0)
-    extension = np.tile(np.linspace(0.0, 0.04, samples), strokes * records) + rng.normal(0, 1e-5, len(stroke))
+    extension = np.tile(np.linspace(0.0, 0.04, samples), strokes * records) + rng.normal(
+        0, 1e-5, len(stroke)
+    )
     return stroke, record, direction, extension
 
 

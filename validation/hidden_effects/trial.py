@@ -21,8 +21,8 @@ import numpy as np
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
-
 from sms.diagnosis import diagnose
+
 from validation.hidden_effects import effects
 from validation.hidden_effects.draw import draw, open_truth
 

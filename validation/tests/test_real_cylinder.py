@@ -7,17 +7,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from sms.diagnosis import Diagnosis, diagnose
 
 ROOT = Path(__file__).parents[2]
 DATA = "cylinder_friction_zillen"
-PLACES = [Path(p) / DATA for p in (os.environ.get("SMS_DATA"), ROOT.parent / "shared" / "data") if p]
+PLACES = [
+    Path(p) / DATA for p in (os.environ.get("SMS_DATA"), ROOT.parent / "shared" / "data") if p
+]
 FOLDER = next((p for p in PLACES if p.is_dir()), None)
 
-pytestmark = pytest.mark.skipif(FOLDER is None, reason=f"the measured data is not at hand (looked in {PLACES}); "
-                                "GitHub EvaZillen/3D-printed-pneumatic-actuator, CC0-1.0, set SMS_DATA to the folder "
-                                "above it")
+pytestmark = pytest.mark.skipif(
+    FOLDER is None,
+    reason=f"the measured data is not at hand (looked in {PLACES}); "
+    "GitHub EvaZillen/3D-printed-pneumatic-actuator, CC0-1.0, set SMS_DATA to the folder "
+    "above it",
+)
 
 
 @pytest.fixture(scope="module", params=["o_ring", "kdn"])
@@ -32,7 +36,11 @@ def test_two_causes_are_named(answer: Diagnosis) -> None:
     assert answer.verdict == "combination"
     gain, friction = answer.causes
     assert set(gain.members) == {"sensor_gain", "bore_diameter"}
-    assert {gain.signal, *(a.signal for a in gain.alternatives)} == {"rod_force", "chamber_pressure_lower", None}
+    assert {gain.signal, *(a.signal for a in gain.alternatives)} == {
+        "rod_force",
+        "chamber_pressure_lower",
+        None,
+    }
     assert 0.005 < gain.parameters[0].value < 0.02
     assert friction.members == ("pressure_dependent_friction",)
 
@@ -58,7 +66,9 @@ def test_nothing_is_claimed_of_speed(answer: Diagnosis) -> None:
     assert "decade" in blind["viscous_friction"]
 
 
-def test_the_proportional_error_stays_with_the_rig_and_the_friction_goes_with_the_seal(answer: Diagnosis) -> None:
+def test_the_proportional_error_stays_with_the_rig_and_the_friction_goes_with_the_seal(
+    answer: Diagnosis,
+) -> None:
     assert len(answer.related) == 4
     if "O-ring" in answer.title:
         text = " ".join(answer.conclusion)

@@ -3,7 +3,10 @@
 prepare     the measured records as the core's problem: motion derived, strokes found
 catalogue   the effects that can be named (catalogue.toml)
 statistics  judgements that respect coloured residuals: strokes are the unit, not samples
-search      baseline fit, screening, held-out judgement, classes, round by round
+repeatability   what repeats, what drifts, and the noise floor
+search      baseline fit, screening, held-out judgement, classes: one round
+rounds      rounds until nothing more is found, and the verdict
+evidence    sizes with honest errors, gains, what is left
 method      the whole method, from a rig file to a Diagnosis (result.py)
 report, console   the answer for people
 """

@@ -11,7 +11,6 @@ from typing import Any, Literal
 
 from sms.parameters import PARAMETERS
 
-
 SIGNALS_IN_WORDS = {
     "rod_force": "rod force",
     "chamber_pressure_lower": "lower chamber pressure",
@@ -51,8 +50,10 @@ class Effect:
 
 def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
     for signal in entry.get("signals", [None]):
-        text = {key: entry[key].format(signal=SIGNALS_IN_WORDS.get(signal, ""))
-                for key in ("title", "cause")}
+        text = {
+            key: entry[key].format(signal=SIGNALS_IN_WORDS.get(signal, ""))
+            for key in ("title", "cause")
+        }
         yield Effect(
             id=entry["id"],
             signal=signal,

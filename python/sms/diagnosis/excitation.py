@@ -30,8 +30,10 @@ def levels(data: Comparison, stroke: float) -> str:
     pressures = [float(np.mean(m.signals["chamber_pressure_lower"][m.used])) for m in data.motions]
     if max(pressures) >= LEVELS * min(pressures):
         return ""
-    return (f"the identify records are all at one pressure ({min(pressures) / 1e5:.2f} to "
-            f"{max(pressures) / 1e5:.2f} bar); needed are levels {LEVELS:g} times apart")
+    return (
+        f"the identify records are all at one pressure ({min(pressures) / 1e5:.2f} to "
+        f"{max(pressures) / 1e5:.2f} bar); needed are levels {LEVELS:g} times apart"
+    )
 
 
 def both_directions(data: Comparison, stroke: float) -> str:
@@ -44,8 +46,10 @@ def travel(data: Comparison, stroke: float) -> str:
     low, high = _range(data.inputs["extension [m]"])
     if high - low >= TRAVEL * stroke:
         return ""
-    return (f"the rod moves over {1e3 * (high - low):.1f} mm of {1e3 * stroke:.0f} mm only; needed is a "
-            "quarter of the stroke")
+    return (
+        f"the rod moves over {1e3 * (high - low):.1f} mm of {1e3 * stroke:.0f} mm only; needed is a "
+        "quarter of the stroke"
+    )
 
 
 def speeds(data: Comparison, stroke: float) -> str:
@@ -53,8 +57,10 @@ def speeds(data: Comparison, stroke: float) -> str:
     low, high = max(ranges, key=lambda r: r[1] / r[0])
     if high >= SPEEDS * low:
         return ""
-    return (f"the speeds of a record span {1e3 * low:.1f} to {1e3 * high:.1f} mm/s at most, a factor of "
-            f"{high / low:.1f}; a decade is needed to tell a slope from a constant force")
+    return (
+        f"the speeds of a record span {1e3 * low:.1f} to {1e3 * high:.1f} mm/s at most, a factor of "
+        f"{high / low:.1f}; a decade is needed to tell a slope from a constant force"
+    )
 
 
 def break_away(data: Comparison, stroke: float) -> str:
@@ -66,8 +72,13 @@ def break_away(data: Comparison, stroke: float) -> str:
 
 def fast(data: Comparison, stroke: float) -> str:
     fastest = float(np.max(np.abs(data.inputs["velocity [m/s]"])))
-    return "" if fastest >= FAST else (
-        f"the fastest sample moves at {1e3 * fastest:.1f} mm/s; needed are {1e3 * FAST:.0f} mm/s")
+    return (
+        ""
+        if fastest >= FAST
+        else (
+            f"the fastest sample moves at {1e3 * fastest:.1f} mm/s; needed are {1e3 * FAST:.0f} mm/s"
+        )
+    )
 
 
 def accelerations(data: Comparison, stroke: float) -> str:
@@ -75,21 +86,33 @@ def accelerations(data: Comparison, stroke: float) -> str:
     largest = float(np.quantile(np.abs(values), 0.99))
     if largest >= ACCELERATION:
         return ""
-    return (f"the rod hardly accelerates ({largest:.2f} m/s^2 at most); needed are "
-            f"{ACCELERATION:g} m/s^2")
+    return (
+        f"the rod hardly accelerates ({largest:.2f} m/s^2 at most); needed are "
+        f"{ACCELERATION:g} m/s^2"
+    )
 
 
 def motion_forces(data: Comparison, stroke: float) -> str:
     if not speeds(data, stroke) and not accelerations(data, stroke):
         return ""
-    return ("the motion is an input of this rig's force balance: an error of its sensor shows only in forces that "
-            "follow speed and acceleration, and these records are too slow and even for that")
+    return (
+        "the motion is an input of this rig's force balance: an error of its sensor shows only in forces that "
+        "follow speed and acceleration, and these records are too slow and even for that"
+    )
 
 
 CHECKS: dict[str, Callable[[Comparison, float], str]] = {
     check.__name__: check
-    for check in (levels, both_directions, travel, speeds, break_away, fast, accelerations,
-                  motion_forces)
+    for check in (
+        levels,
+        both_directions,
+        travel,
+        speeds,
+        break_away,
+        fast,
+        accelerations,
+        motion_forces,
+    )
 }
 
 

@@ -30,7 +30,10 @@ def check_output_folder(out: Path) -> None:
 def write_diagnosis(diagnosis: Diagnosis, rig: Path, out: Path) -> tuple[Path, ...]:
     """Write the three files into the folder `out`, made if need be. InputError if that cannot be done."""
     extended, page, data = out / "extended.toml", out / "report.html", out / "diagnosis.json"
-    text = json.dumps(_plain(diagnosis.to_dict()), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    text = (
+        json.dumps(_plain(diagnosis.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
+        + "\n"
+    )
     html = report_html(diagnosis)
     write_extended_rig(rig, extended, extension_of(diagnosis), header_of(diagnosis))
     write_text_atomically(page, html)
@@ -40,13 +43,18 @@ def write_diagnosis(diagnosis: Diagnosis, rig: Path, out: Path) -> tuple[Path, .
 
 def extension_of(diagnosis: Diagnosis) -> dict[str, Declaration]:
     """The found parameters as a rig file declares them: value, and COVERAGE standard errors."""
-    return {p.name: Declaration(p.value, COVERAGE * p.standard_error)
-            for cause in diagnosis.causes for p in cause.parameters}
+    return {
+        p.name: Declaration(p.value, COVERAGE * p.standard_error)
+        for cause in diagnosis.causes
+        for p in cause.parameters
+    }
 
 
 def header_of(diagnosis: Diagnosis) -> str:
-    lines = [f"Extended by sms {diagnosis.versions['sms']} from {diagnosis.rig}, seed {diagnosis.seed}.",
-             f"Verdict: {diagnosis.verdict}. {diagnosis.sentence}"]
+    lines = [
+        f"Extended by sms {diagnosis.versions['sms']} from {diagnosis.rig}, seed {diagnosis.seed}.",
+        f"Verdict: {diagnosis.verdict}. {diagnosis.sentence}",
+    ]
     return "\n".join(lines)
 
 

@@ -50,7 +50,9 @@ def derive_motion(time: Array, position: Array) -> tuple[Array, Array]:
     grid = np.arange(time[0], time[-1] + step, step)
     window = max(5, 2 * round(0.5 * SMOOTHING_TIME / step) + 1)
     if window > len(grid):
-        raise InputError(f"{len(grid)} samples are too few to derive a velocity, {window} are needed")
+        raise InputError(
+            f"{len(grid)} samples are too few to derive a velocity, {window} are needed"
+        )
     even = np.interp(grid, time, position)
     velocity = savgol_filter(even, window, 2, deriv=1, delta=step)
     acceleration = savgol_filter(even, window, 2, deriv=2, delta=step)
@@ -124,8 +126,10 @@ class Comparison:
     @cached_property
     def inputs(self) -> dict[str, Array]:
         """(rows,) each: the signals along which a residual may be arranged, SI."""
-        return {name: np.concatenate([inputs_of(m)[name][m.used] for m in self.motions])
-                for name in inputs_of(self.motions[0])}
+        return {
+            name: np.concatenate([inputs_of(m)[name][m.used] for m in self.motions])
+            for name in inputs_of(self.motions[0])
+        }
 
     def part(self, number: int) -> Comparison:
         """One of the records alone."""

@@ -28,7 +28,9 @@ def related_rigs(rig: Rig, extended: Fitted, effects: tuple[Effect, ...]) -> tup
     return tuple(rows)
 
 
-def _row(rig: Rig, differs: str, causes: tuple[Effect, ...], effects: tuple[Effect, ...]) -> Related:
+def _row(
+    rig: Rig, differs: str, causes: tuple[Effect, ...], effects: tuple[Effect, ...]
+) -> Related:
     everything = Comparison(tuple(prepare(rig, load_record(rig, source)) for source in rig.records))
     hypothesis = baseline_hypothesis(Data(rig, everything, everything), effects)
     for cause in causes:
@@ -37,6 +39,10 @@ def _row(rig: Rig, differs: str, causes: tuple[Effect, ...], effects: tuple[Effe
     names = [name for name, declared in rig.parameters.items() if declared.fit]
     names += [name for cause in causes for name in cause.parameters]
     values = tuple(
-        ParameterValue(n, fitted.params[n], fitted.standard_error(n), PARAMETERS[n].unit, rig.declared(n).value)
-        for n in dict.fromkeys(names) if n in hypothesis.free)
+        ParameterValue(
+            n, fitted.params[n], fitted.standard_error(n), PARAMETERS[n].unit, rig.declared(n).value
+        )
+        for n in dict.fromkeys(names)
+        if n in hypothesis.free
+    )
     return Related(rig.path.name, rig.title, differs, values)

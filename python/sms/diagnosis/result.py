@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -173,46 +173,38 @@ class Series:
     """Signals against which the residual is drawn: "extension [m]", "velocity [m/s]", "direction", ..."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Diagnosis:
     """The whole answer."""
 
     rig: str
     title: str
-    verdict: Verdict
-    sentence: str
-    """The verdict in plain words."""
-    conclusion: tuple[str, ...]
-    """What an engineer would conclude, a sentence each."""
-    causes: tuple[Cause, ...]
-    candidates: tuple[Candidate, ...]
-    not_testable: tuple[NotTestable, ...]
-    gain: tuple[Gain, ...]
-    remainder: Remainder | None
-    noise_floor: dict[str, float]
-    """"sample" and "stroke": rms of what differs from sample to sample and from stroke to stroke, N."""
-    baseline: tuple[ParameterValue, ...]
-    next_experiment: NextExperiment | None
-    related: tuple[Related, ...]
     findings: tuple[Finding, ...]
     records: dict[str, str]
     """Record name -> role."""
     seed: int
     versions: dict[str, str] = field(default_factory=dict)
+    verdict: Verdict = "no-evidence"
+    sentence: str = ""
+    """The verdict in plain words."""
+    conclusion: tuple[str, ...] = ()
+    """What an engineer would conclude, a sentence each."""
+    causes: tuple[Cause, ...] = ()
+    candidates: tuple[Candidate, ...] = ()
+    not_testable: tuple[NotTestable, ...] = ()
+    gain: tuple[Gain, ...] = ()
+    remainder: Remainder | None = None
+    noise_floor: dict[str, float] = field(default_factory=dict)
+    """"sample" and "stroke": rms of what differs from sample to sample and from stroke to stroke, N."""
+    baseline: tuple[ParameterValue, ...] = ()
+    next_experiment: NextExperiment | None = None
+    related: tuple[Related, ...] = ()
     series: tuple[Series, ...] = field(default=(), repr=False)
 
     def to_dict(self) -> dict[str, Any]:
         """The contents of diagnosis.json: everything but the curves."""
-        out: dict[str, Any] = {}
-        for name in self.__dataclass_fields__:
-            if name == "series":
-                continue
-            value = getattr(self, name)
-            out[name] = (
-                [asdict(v) for v in value]
-                if isinstance(value, tuple) and value and not isinstance(value[0], str)
-                else asdict(value)
-                if hasattr(value, "__dataclass_fields__")
-                else value
-            )
-        return out
+        return asdict(replace(self, series=()), dict_factory=_without_series)
+
+
+def _without_series(items: list[tuple[str, Any]]) -> dict[str, Any]:
+    return {name: value for name, value in items if name != "series"}

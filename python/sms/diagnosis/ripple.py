@@ -29,7 +29,12 @@ def find_ripple(residual: Array, comparison: Comparison) -> Ripple | None:
     spectra = []
     for number in range(len(comparison.motions)):
         for sign in (-1.0, 1.0):
-            rows = (comparison.record == number) & (direction == sign) & (low < extension) & (extension < high)
+            rows = (
+                (comparison.record == number)
+                & (direction == sign)
+                & (low < extension)
+                & (extension < high)
+            )
             if rows.sum() > 200:
                 spectra.append(_amplitudes(extension[rows], residual[rows], frequency))
     if len(spectra) < 2:

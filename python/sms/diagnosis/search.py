@@ -54,7 +54,9 @@ class Hypothesis:
 
     def with_effect(self, effect: Effect) -> Hypothesis:
         """The effect's parameters freed within the bounds of params.def."""
-        wide = {name: (PARAMETERS[name].lower, PARAMETERS[name].upper) for name in effect.parameters}
+        wide = {
+            name: (PARAMETERS[name].lower, PARAMETERS[name].upper) for name in effect.parameters
+        }
         known = {name: u for name, u in self.known.items() if name not in wide}
         return replace(self, free=self.free | wide, known=known, causes=(*self.causes, effect))
 
@@ -79,7 +81,9 @@ class Fitted:
     @property
     def movable(self) -> list[str]:
         """Free parameters that are not held by a bound."""
-        return [n for n, held in zip(self.hypothesis.free, self.fit.at_bound, strict=True) if not held]
+        return [
+            n for n, held in zip(self.hypothesis.free, self.fit.at_bound, strict=True) if not held
+        ]
 
 
 @dataclass
@@ -127,25 +131,32 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
             free[name] = (bounds.lower, bounds.upper)
         elif declared.uncertainty > 0.0:
             uncertain[name] = declared.uncertainty
-            free[name] = (max(bounds.lower, declared.value - declared.uncertainty),
-                          min(bounds.upper, declared.value + declared.uncertainty))
+            free[name] = (
+                max(bounds.lower, declared.value - declared.uncertainty),
+                min(bounds.upper, declared.value + declared.uncertainty),
+            )
     _, jacobian = data.identify.problem.evaluate(start, list(free))
     seen = np.linalg.norm(jacobian, axis=0) > 0.0
-    return Hypothesis(start, {n: b for n, b, s in zip(free, free.values(), seen, strict=True) if s}, uncertain)
+    return Hypothesis(
+        start, {n: b for n, b, s in zip(free, free.values(), seen, strict=True) if s}, uncertain
+    )
 
 
 def fit(hypothesis: Hypothesis, comparison: Comparison) -> Fitted:
     """Least squares over the hypothesis' free parameters, with block-robust covariance."""
     before, _ = comparison.problem.evaluate(hypothesis.start)
     sample = float(np.sqrt(np.mean(before**2)))
-    free = [(name, *bounds, sample / hypothesis.known[name] if name in hypothesis.known else 0.0)
-            for name, bounds in hypothesis.free.items()]
+    free = [
+        (name, *bounds, sample / hypothesis.known[name] if name in hypothesis.known else 0.0)
+        for name, bounds in hypothesis.free.items()
+    ]
     result = _core.fit(comparison.problem, hypothesis.start, free)
     covariance = np.zeros((len(free), len(free)))
     moved = np.flatnonzero(~np.array(result.at_bound, dtype=bool))
     if len(moved):
         covariance[np.ix_(moved, moved)] = covariance_of(
-            result.jacobian[:, moved], result.residual, comparison.block)
+            result.jacobian[:, moved], result.residual, comparison.block
+        )
     return Fitted(hypothesis, result, covariance)
 
 
@@ -158,13 +169,15 @@ def footprints(fitted: Fitted, comparison: Comparison, names: list[str]) -> Arra
     """(rows, names): how the residual changes with each parameter, beyond what the free ones can undo."""
     nuisance = [n for n in fitted.movable if n not in names]
     _, jacobian = comparison.problem.evaluate(fitted.params, nuisance + names)
-    return project_off(jacobian[:, len(nuisance):], jacobian[:, : len(nuisance)])
+    return project_off(jacobian[:, len(nuisance) :], jacobian[:, : len(nuisance)])
 
 
 # ---- which effects can be seen at all ------------------------------------------------------------------------
 
 
-def testable(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple[list[Effect], list[NotTestable]]:
+def testable(
+    fitted: Fitted, data: Data, effects: Sequence[Effect]
+) -> tuple[list[Effect], list[NotTestable]]:
     """The effects that the identify records can show, and why they cannot show the others."""
     seen: list[Effect] = []
     blind: list[NotTestable] = []
@@ -194,8 +207,10 @@ def _why_blind(effect: Effect, fitted: Fitted, data: Data, stroke: float) -> str
         return reason
     column = footprints(fitted, data.identify, names)
     if np.all(np.linalg.norm(column, axis=0) < 1e-6 * raw):
-        return ("all it would leave is undone by parameters that are fitted, or that may move this far within "
-                "their declared uncertainty")
+        return (
+            "all it would leave is undone by parameters that are fitted, or that may move this far within "
+            "their declared uncertainty"
+        )
     low, high = effect.plausible_range(data.rig.declared(names[0]).value)
     error = np.sqrt(covariance_of(column, fitted.fit.residual, data.identify.block)[0, 0])
     if error * DETECTION > max(abs(low), abs(high)):
@@ -207,7 +222,9 @@ def _why_blind(effect: Effect, fitted: Fitted, data: Data, stroke: float) -> str
 # ---- one round -----------------------------------------------------------------------------------------------
 
 
-def try_effects(current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator) -> list[Trial]:
+def try_effects(
+    current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
+) -> list[Trial]:
     """Every effect fitted on top of the current model, with its p-value among all of them."""
     names = [e.parameters[0] for e in effects]
     columns = np.column_stack([footprints(current, data.identify, [n])[:, 0] for n in names])
@@ -246,8 +263,13 @@ class Yardstick:
         return max(WORTH * max(self.original - self.floor, 0.0), WORTH_OF_NOISE * self.floor)
 
 
-def judge(trials: Sequence[Trial], current: Fitted, data: Data, yardstick: Yardstick,
-          rng: np.random.Generator) -> None:
+def judge(
+    trials: Sequence[Trial],
+    current: Fitted,
+    data: Data,
+    yardstick: Yardstick,
+    rng: np.random.Generator,
+) -> None:
     """Each trial's gain on the validate records and whether it can be a cause; fills gain, accepted, reason."""
     before = residual_of(data.validate, current.params) ** 2
     block = data.validate.block

@@ -19,8 +19,6 @@ from sms.units_display import format_change, format_estimate, format_quantity
 from sms.units_display import words as spaced
 
 
-
-
 def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
@@ -37,7 +35,7 @@ def _amount(p: ParameterValue, shifted: bool) -> str:
 
 
 def explained(cause: Cause) -> str:
-    """A cause with its size; for a class every explanation with its own: "one of ...: which, these signals cannot tell"."""
+    """A cause with its size; for a class every explanation with its own."""
     if not cause.alternatives:
         return f"{cause.title} ({amount(cause)})"
     rivals = [f"{cause.title} ({amount(cause)})"]
@@ -49,22 +47,32 @@ def explained(cause: Cause) -> str:
 
 def sentence(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder | None) -> str:
     if verdict == "no-evidence":
-        return ("No evidence that the simulation is wrong: within its declared uncertainties the model explains "
-                "these records down to what does not repeat from stroke to stroke.")
+        return (
+            "No evidence that the simulation is wrong: within its declared uncertainties the model explains "
+            "these records down to what does not repeat from stroke to stroke."
+        )
     if verdict == "unknown":
         where = f" ({arranged(remainder)})" if remainder is not None else ""
-        return ("The simulation is wrong, and no effect of the catalogue explains how: the error is systematic"
-                f"{where}.")
+        return (
+            "The simulation is wrong, and no effect of the catalogue explains how: the error is systematic"
+            f"{where}."
+        )
     if len(causes) == 1:
         return f"The simulation misses {explained(causes[0])}."
-    return "The simulation misses " + "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1)) + "."
+    return (
+        "The simulation misses "
+        + "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1))
+        + "."
+    )
 
 
 def data_fault(faults: Sequence[Finding]) -> str:
     first = faults[0]
     where = f"{first.file}" + (f", line {first.line}" if first.line else "")
-    return (f"The data cannot be trusted, so nothing is concluded from it. {where}, {first.signal}: "
-            f"{first.message}; {first.remedy}.")
+    return (
+        f"The data cannot be trusted, so nothing is concluded from it. {where}, {first.signal}: "
+        f"{first.message}; {first.remedy}."
+    )
 
 
 ARRANGED = {
@@ -76,10 +84,15 @@ ARRANGED = {
 
 
 def arranged(remainder: Remainder) -> str:
-    """"0.8 N along the stroke, the same in every stroke; 0.5 N ..." - the parts that repeat, the largest first."""
-    shares = sorted(((s, name) for name, s in remainder.shares.items() if name in ARRANGED), reverse=True)
-    return "; ".join(f"{remainder.rms * share**0.5:.2f} {remainder.unit} {ARRANGED[name]}"
-                     for share, name in shares if share > 0.05)
+    """ "0.8 N along the stroke, the same in every stroke; 0.5 N ..." - the parts that repeat, the largest first."""
+    shares = sorted(
+        ((s, name) for name, s in remainder.shares.items() if name in ARRANGED), reverse=True
+    )
+    return "; ".join(
+        f"{remainder.rms * share**0.5:.2f} {remainder.unit} {ARRANGED[name]}"
+        for share, name in shares
+        if share > 0.05
+    )
 
 
 REPEAT = "repeat"
@@ -89,16 +102,31 @@ REPEAT = "repeat"
 # ---- what an engineer would conclude ---------------------------------------------------------------------------
 
 
-def conclusion(verdict: Verdict, causes: Sequence[Cause], gain: Sequence[Gain], remainder: Remainder,
-               blind: Sequence[NotTestable], related: Sequence[Related]) -> tuple[str, ...]:
+def conclusion(
+    causes: Sequence[Cause],
+    gain: Sequence[Gain],
+    remainder: Remainder,
+    blind: Sequence[NotTestable],
+    related: Sequence[Related],
+) -> tuple[str, ...]:
     out = [_across_rigs(c, related) for c in causes if len(related) > 1]
     if causes:
-        worth = ", ".join(f"{g.record}: {g.baseline_rms:.2f} to {g.extended_rms:.2f} {g.unit}" for g in gain)
-        out.append(f"On the records it was not fitted to, the extended model's error falls ({worth}).")
-    out.append(_of_remainder(verdict, remainder))
-    hidden = [n for n in blind if n.effect in ("viscous_friction", "stribeck_friction", "exponential_friction")]
+        worth = ", ".join(
+            f"{g.record}: {g.baseline_rms:.2f} to {g.extended_rms:.2f} {g.unit}" for g in gain
+        )
+        out.append(
+            f"On the records it was not fitted to, the extended model's error falls ({worth})."
+        )
+    out.append(_of_remainder(remainder))
+    hidden = [
+        n
+        for n in blind
+        if n.effect in ("viscous_friction", "stribeck_friction", "exponential_friction")
+    ]
     if hidden:
-        out.append(f"Nothing is claimed about {', '.join(spaced(n.effect) for n in hidden)}: {hidden[0].reason}.")
+        out.append(
+            f"Nothing is claimed about {', '.join(spaced(n.effect) for n in hidden)}: {hidden[0].reason}."
+        )
     return tuple(out)
 
 
@@ -107,8 +135,12 @@ def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
     name = cause.parameters[0].name
     found = [(r, p) for r in related for p in r.parameters if p.name == name]
     own = found[0][1]
-    others = ", ".join(f"{_amount(p, cause.kind == 'shifted parameter')} ({r.title})" for r, p in found[1:])
-    text = f"{capital(cause.title)}: {_amount(own, cause.kind == 'shifted parameter')} here, {others}."
+    others = ", ".join(
+        f"{_amount(p, cause.kind == 'shifted parameter')} ({r.title})" for r, p in found[1:]
+    )
+    text = (
+        f"{capital(cause.title)}: {_amount(own, cause.kind == 'shifted parameter')} here, {others}."
+    )
     repeats = [p.value for r, p in found if r.differs == REPEAT]
     if not repeats:
         return text
@@ -117,26 +149,34 @@ def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
     for differs in dict.fromkeys(r.differs for r, _ in found if r.differs not in ("", REPEAT)):
         values = [p.value for r, p in found if r.differs == differs]
         if all(abs(v - own.value) <= spread for v in values):
-            text += (f" With another {differs} it is the same within that scatter: it belongs to the rig, not to the "
-                     f"{differs}.")
+            text += (
+                f" With another {differs} it is the same within that scatter: it belongs to the rig, not to the "
+                f"{differs}."
+            )
         else:
-            text += f" With another {differs} it differs by more than that: it goes with the {differs}."
+            text += (
+                f" With another {differs} it differs by more than that: it goes with the {differs}."
+            )
     return text
 
 
-def _of_remainder(verdict: Verdict, remainder: Remainder) -> str:
+def _of_remainder(remainder: Remainder) -> str:
     text = f"What is left on unseen records is {remainder.rms:.2f} {remainder.unit} rms"
     if arranged(remainder):
         text += f"; part of it is systematic, so there is more to be found: {arranged(remainder)}"
         if (ripple := remainder.ripple) is not None:
-            text += (f". Along the stroke it has a period of {format_quantity(ripple.period, 'm')}, amplitude "
-                     f"{ripple.amplitude:.2f} {remainder.unit}: look for a screw, thread or gear of that pitch")
+            text += (
+                f". Along the stroke it has a period of {format_quantity(ripple.period, 'm')}, amplitude "
+                f"{ripple.amplitude:.2f} {remainder.unit}: look for a screw, thread or gear of that pitch"
+            )
     else:
         text += ", and it does not repeat from stroke to stroke: a better model would not take it"
     return text + "."
 
 
-def next_experiment(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder) -> NextExperiment | None:
+def next_experiment(
+    verdict: Verdict, causes: Sequence[Cause], remainder: Remainder
+) -> NextExperiment | None:
     """The measurement that would tell most: the first class apart, else the unknown closer."""
     for cause in causes:
         if cause.alternatives:
@@ -145,5 +185,7 @@ def next_experiment(verdict: Verdict, causes: Sequence[Cause], remainder: Remain
     if verdict == "unknown":
         return NextExperiment(
             "Slow strokes over the whole travel, both ways, at two pressures and two speeds",
-            f"shows whether the unexplained force goes with position, pressure or speed ({arranged(remainder)})", ())
+            f"shows whether the unexplained force goes with position, pressure or speed ({arranged(remainder)})",
+            (),
+        )
     return None

@@ -27,8 +27,11 @@ def trial(first: int) -> None:
     console = Console(width=160)
     healthy = range(first, first + COUNT)
     ill = range(first + COUNT, first + 2 * COUNT)
-    outcomes = run_trials([*healthy, *ill], lambda s: "none" if s in healthy else some_effect(s),
-                          workers=os.cpu_count() or 1)
+    outcomes = run_trials(
+        [*healthy, *ill],
+        lambda s: "none" if s in healthy else some_effect(s),
+        workers=os.cpu_count() or 1,
+    )
     console.print(f"seeds {first} to {first + 2 * COUNT - 1}")
     console.print(confusion_matrix(outcomes))
     console.print(summary(outcomes))

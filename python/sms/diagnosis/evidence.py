@@ -1,0 +1,202 @@
+"""The findings as numbers: sizes with honest errors, gains on unseen records, what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sms import _core
+from sms.diagnosis.prepare import Motion, inputs_of, predict
+from sms.diagnosis.repeatability import Repeatability, arrangement
+from sms.diagnosis.result import (
+    Candidate,
+    Cause,
+    Gain,
+    Member,
+    ParameterValue,
+    Remainder,
+    Series,
+)
+from sms.diagnosis.ripple import find_ripple
+from sms.diagnosis.rounds import Outcome, Round
+from sms.diagnosis.search import Data, Fitted, Trial, fit, residual_of
+from sms.diagnosis.statistics import interval, resampled, weighted_ms
+from sms.parameters import PARAMETERS
+
+
+def value_of(fitted: Fitted, name: str, old: float) -> ParameterValue:
+    error = fitted.standard_error(name) if name in fitted.hypothesis.free else 0.0
+    return ParameterValue(name, fitted.params[name], error, PARAMETERS[name].unit, old)
+
+
+def found_value(fitted: Fitted, name: str, old: float, data: Data) -> ParameterValue:
+    """A cause's parameter. Its error is that between strokes or that between records, whichever is larger."""
+    estimates = record_by_record(fitted, name, data)
+    value = fitted.params[name]
+    weight = sum(e.information for e in estimates)
+    scatter = sum(e.information * (e.value - value) ** 2 for e in estimates)
+    between = np.sqrt(scatter / weight / (len(estimates) - 1))
+    return ParameterValue(
+        name, value, max(fitted.standard_error(name), float(between)), PARAMETERS[name].unit, old
+    )
+
+
+def instead(
+    outcome: Outcome, baseline: Fitted, members: Sequence[Trial], other: Trial, data: Data
+) -> Fitted:
+    """The final model with another member of one class in the place of the one that stands for it."""
+    hypothesis = baseline.hypothesis
+    for chosen in outcome.classes:
+        effect = other.effect if chosen is members else chosen[0].effect
+        hypothesis = hypothesis.with_effect(effect)
+    return fit(hypothesis, data.identify)
+
+
+def cause_of(members: Sequence[Trial], outcome: Outcome, baseline: Fitted, data: Data) -> Cause:
+    first = members[0]
+    start = _core.Params(**{n: d.value for n, d in data.rig.parameters.items()})
+    final = tuple(found_value(outcome.final, n, start[n], data) for n in first.effect.parameters)
+    return Cause(
+        effect=first.effect.id,
+        signal=first.effect.signal,
+        kind="missing term" if first.effect.kind == "missing" else "shifted parameter",
+        block=first.effect.block,
+        title=first.effect.title,
+        explanation=first.effect.cause,
+        members=tuple(dict.fromkeys(m.effect.id for m in members)),
+        alternatives=tuple(
+            Member(
+                m.effect.id,
+                m.effect.signal,
+                m.effect.title,
+                tuple(
+                    found_value(instead(outcome, baseline, members, m, data), n, start[n], data)
+                    for n in m.effect.parameters
+                ),
+                first.similarity[m.effect.key],
+            )
+            for m in members[1:]
+        ),
+        parameters=final,
+        p_value=first.p_value,
+        consistency={
+            e.record: e.value
+            for e in record_by_record(outcome.final, first.effect.parameters[0], data)
+        },
+        separated_by=" ".join(dict.fromkeys(m.effect.separated_by for m in members))
+        if len(members) > 1
+        else "",
+    )
+
+
+@dataclass(frozen=True)
+class RecordEstimate:
+    """One parameter refitted on one record alone, all others held."""
+
+    record: str
+    value: float
+    information: float
+    """Sum of the squared sensitivities: its weight among the records."""
+
+
+def record_by_record(fitted: Fitted, name: str, data: Data) -> list[RecordEstimate]:
+    out = []
+    for comparison in (data.identify, data.validate):
+        for number, motion in enumerate(comparison.motions):
+            residual, jacobian = comparison.part(number).problem.evaluate(fitted.params, [name])
+            column = jacobian[:, 0]
+            information = max(float(column @ column), 1e-300)
+            step = -float(column @ residual) / information
+            out.append(RecordEstimate(motion.name, fitted.params[name] + step, information))
+    return out
+
+
+def gains(
+    baseline: Fitted, extended: Fitted, data: Data, floor: float, rng: np.random.Generator
+) -> tuple[Gain, ...]:
+    """What the extension is worth on each validate record."""
+    out = []
+    for number, motion in enumerate(data.validate.motions):
+        part = data.validate.part(number)
+        b = residual_of(part, baseline.params) ** 2
+        e = residual_of(part, extended.params) ** 2
+        counts = resampled(part.record, part.block, rng)
+        reduction = 1.0 - np.sqrt(
+            weighted_ms(e, part.block, counts) / weighted_ms(b, part.block, counts)
+        )
+        rms_b, rms_e = float(np.sqrt(np.mean(b))), float(np.sqrt(np.mean(e)))
+        out.append(
+            Gain(
+                motion.name,
+                "rod_force",
+                "N",
+                rms_b,
+                rms_e,
+                floor,
+                1.0 - rms_e / rms_b,
+                *interval(reduction),
+            )
+        )
+    return tuple(out)
+
+
+def remainder_of(
+    extended: Fitted, data: Data, before: Repeatability, after: Repeatability
+) -> Remainder:
+    residual = residual_of(data.validate, extended.params)
+    ms = float(np.mean(residual**2))
+    return Remainder(
+        rms=float(np.sqrt(ms)),
+        unit="N",
+        share_of_excess=after.systematic / before.systematic if before.systematic > 0.0 else 0.0,
+        repeats=min(after.repeats / ms, 1.0) if ms > 0.0 else 0.0,
+        shares=arrangement(
+            residual, data.validate.record, data.validate.inputs["direction"], after
+        ),
+        ripple=find_ripple(residual, data.validate),
+    )
+
+
+def series_of(motion: Motion, baseline: Fitted, extended: Fitted) -> Series:
+    return Series(
+        motion.name,
+        motion.role,
+        "rod_force",
+        "N",
+        motion.time,
+        motion.signals["rod_force"],
+        predict(motion, baseline.params),
+        predict(motion, extended.params),
+        motion.used,
+        inputs_of(motion),
+    )
+
+
+def candidates_of(rounds: Sequence[Round]) -> tuple[Candidate, ...]:
+    """Every effect that was tried, round by round."""
+    return tuple(_candidate(t, n, r) for n, r in enumerate(rounds, 1) for t in r.trials)
+
+
+def _candidate(trial: Trial, number: int, its_round: Round) -> Candidate:
+    reason, best = trial.reason, trial in its_round.members
+    if trial.accepted:
+        reason = (
+            "the best explanation of this round, or not to be told from it"
+            if best
+            else "explains less than the best of this round; tried again in the next"
+        )
+    start = trial.fitted.hypothesis.start
+    values = tuple(value_of(trial.fitted, n, start[n]) for n in trial.effect.parameters)
+    return Candidate(
+        number,
+        trial.effect.id,
+        trial.effect.signal,
+        values,
+        trial.p_value,
+        trial.gain,
+        *trial.gain_interval,
+        best,
+        reason,
+    )

@@ -1,0 +1,117 @@
+"""Rounds of the search until nothing more is found, and the verdict on what they brought."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.repeatability import Repeatability, repeatability
+from sms.diagnosis.result import Verdict
+from sms.diagnosis.search import (
+    Data,
+    Fitted,
+    Trial,
+    Yardstick,
+    best_class,
+    judge,
+    residual_of,
+    try_effects,
+)
+
+MOST_CAUSES = 4
+"""More are not named: with so many terms something always fits."""
+UNKNOWN_SHARE = 0.2
+"""Of what is systematic in the baseline's error: with more left, the best explanation is none."""
+UNKNOWN_OF_NOISE = 0.05
+"""Least systematic error, as a share of the noise floor's square, that is worth the word unknown."""
+UNKNOWN_CHANCE = 0.005
+"""Largest chance of calling healthy data unknown, for each of the two tests."""
+
+Progress = Callable[[str, float], None]
+"""Called with what is being done and the share that is done, 0..1."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round: every trial in it, and those that the data cannot tell from the best; or none."""
+
+    trials: list[Trial]
+    members: list[Trial]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the rounds brought."""
+
+    final: Fitted
+    rounds: list[Round]
+    named: bool = True
+    """False when so much is left that none of what was found is named."""
+
+    @property
+    def classes(self) -> list[list[Trial]]:
+        """One class of trials for each cause; the first of it stands for it in the final model."""
+        return [r.members for r in self.rounds if r.members] if self.named else []
+
+
+def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatability:
+    """How much of a model's error on the validate records repeats from stroke to stroke."""
+    v = data.validate
+    return repeatability(
+        residual_of(v, fitted.params),
+        v.record,
+        v.stroke,
+        v.inputs["extension [m]"],
+        v.inputs["direction"],
+        rng,
+    )
+
+
+def find_causes(
+    baseline: Fitted,
+    data: Data,
+    effects: Sequence[Effect],
+    floor: float,
+    rng: np.random.Generator,
+    progress: Progress,
+) -> Outcome:
+    """Until nothing more is found: the best effect joins the model, with those that look alike.
+
+    floor: mean square of what does not repeat from stroke to stroke.
+    """
+    original = float(np.mean(residual_of(data.validate, baseline.params) ** 2))
+    yardstick = Yardstick(original, floor)
+    current, rounds = baseline, []
+    remaining = list(effects)
+    for number in range(1, MOST_CAUSES + 1):
+        if not remaining:
+            break
+        done = 0.1 + 0.75 * number / (MOST_CAUSES + 1)
+        progress(f"round {number}: {len(remaining)} effects", done)
+        trials = try_effects(current, data, remaining, rng)
+        judge(trials, current, data, yardstick, rng)
+        members = best_class(trials, data, rng)
+        rounds.append(Round(trials, members))
+        if not members:
+            break
+        current = members[0].fitted
+        found = {m.effect.key for m in members}
+        remaining = [e for e in remaining if e.key not in found]
+    return Outcome(current, rounds)
+
+
+def decide(outcome: Outcome, before: Repeatability, after: Repeatability) -> Verdict:
+    """One of the verdicts, data-fault aside."""
+    least = max(UNKNOWN_OF_NOISE * after.stroke, UNKNOWN_SHARE * before.systematic)
+    repeats = after.repeats > least and after.repeats_p_value < UNKNOWN_CHANCE
+    drifts = after.drift > least and after.drift_p_value < UNKNOWN_CHANCE
+    if repeats or drifts:
+        return "unknown"
+    if not outcome.classes:
+        return "no-evidence"
+    if len(outcome.classes) > 1:
+        return "combination"
+    return "cause" if len(outcome.classes[0]) == 1 else "class"
