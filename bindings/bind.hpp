@@ -17,6 +17,11 @@ using Params = sms::Params<double>;
 void bind_status(py::module_& m);
 void bind_params(py::module_& m);
 void bind_cylinder(py::module_& m);
+void bind_kinematics(py::module_& m);
+void bind_dynamics(py::module_& m);
+void bind_pneumatics(py::module_& m);
+void bind_friction(py::module_& m);
+void bind_controller(py::module_& m);
 #ifdef SMS_WITH_ESTIMATION
 void bind_estimation(py::module_& m);
 #endif

@@ -7,6 +7,11 @@ PYBIND11_MODULE(_core, m) {
   sms_python::bind_status(m);
   sms_python::bind_params(m);
   sms_python::bind_cylinder(m);
+  sms_python::bind_kinematics(m);
+  sms_python::bind_dynamics(m);
+  sms_python::bind_pneumatics(m);
+  sms_python::bind_friction(m);
+  sms_python::bind_controller(m);
 #ifdef SMS_WITH_ESTIMATION
   sms_python::bind_estimation(m);
   m.attr("has_estimation") = true;

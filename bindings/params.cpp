@@ -102,7 +102,7 @@ void bind_params(py::module_& m) {
       .def("__setitem__",
            [](Params& p, const std::string& name, double value) { set_checked(p, param_index(name), value); })
       .def("copy", [](const Params& p) { return Params(p); })
-      .def("__eq__", &equal)
+      .def("__eq__", &equal, py::is_operator())
       .def("__repr__", &represent);
   params.attr("__hash__") = py::none();
 }

@@ -29,6 +29,13 @@ void bind_status(py::module_& m) {
   for (StatusException& e : exceptions) {
     e.type = add(e.name, std::string("Raised when ") + sms_status_string(e.status) + ".", base);
   }
+  m.def(
+      "raise_status",
+      [](int status, const std::string& message) -> py::typing::Never { raise_status(sms_status(status), message); },
+      py::arg("status"), py::arg("message"), "Raises the exception of a status other than 0.");
+  m.def(
+      "status_string", [](int status) { return sms_status_string(sms_status(status)); }, py::arg("status"),
+      "What a status means, in a few words.");
 }
 
 void raise_status(sms_status status, const std::string& message) {

@@ -1,3 +1,6 @@
 #define SMS_REAL double
 #define SMS_F(name) name
 #include "abi.inc"
+#include "abi_dynamics.inc"
+#include "abi_kinematics.inc"
+#include "abi_table.inc"

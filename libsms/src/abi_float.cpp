@@ -1,3 +1,6 @@
 #define SMS_REAL float
 #define SMS_F(name) name##f
 #include "abi.inc"
+#include "abi_dynamics.inc"
+#include "abi_kinematics.inc"
+#include "abi_table.inc"

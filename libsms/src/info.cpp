@@ -13,8 +13,29 @@ constexpr int kParamCount = int(sizeof kParams / sizeof kParams[0]);
 
 }  // namespace
 
+// The build, as the compiler sees it, not as a build script believes it to be.
 #define SMS_TEXT_(x) #x
 #define SMS_TEXT(x) SMS_TEXT_(x)
+#ifdef SMS_FLOAT_ONLY
+#define SMS_SCALARS " float"
+#else
+#define SMS_SCALARS " float+double"
+#endif
+#ifdef __cpp_exceptions
+#define SMS_EXCEPTIONS " exceptions"
+#else
+#define SMS_EXCEPTIONS " no-exceptions"
+#endif
+#ifdef __cpp_rtti
+#define SMS_RTTI " rtti"
+#else
+#define SMS_RTTI " no-rtti"
+#endif
+#ifdef __SANITIZE_ADDRESS__
+#define SMS_SANITIZERS " address-sanitizer"
+#else
+#define SMS_SANITIZERS ""
+#endif
 
 extern "C" {
 
@@ -37,23 +58,7 @@ const char* sms_status_string(sms_status status) {
 const char* sms_version(void) { return SMS_VERSION; }
 
 const char* sms_build_info(void) {
-  return "libsms " SMS_VERSION
-#ifdef SMS_FLOAT_ONLY
-         " float"
-#else
-         " float+double"
-#endif
-         " c++" SMS_TEXT(__cplusplus)
-#ifdef __cpp_exceptions
-         " exceptions"
-#else
-         " no-exceptions"
-#endif
-#ifdef __cpp_rtti
-         " rtti";
-#else
-         " no-rtti";
-#endif
+  return "libsms " SMS_VERSION SMS_SCALARS " c++" SMS_TEXT(__cplusplus) SMS_EXCEPTIONS SMS_RTTI SMS_SANITIZERS;
 }
 
 int sms_param_count(void) { return kParamCount; }

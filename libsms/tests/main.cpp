@@ -1,5 +1,7 @@
 // --seed N repeats a random run, --count N sets how many random cases a property test takes; both are printed.
+// doctest's own options have the prefix dt- (--dt-test-case=friction*), because it knows another --count.
 #define DOCTEST_CONFIG_IMPLEMENT
+#define DOCTEST_CONFIG_NO_UNPREFIXED_OPTIONS
 #include <doctest/doctest.h>
 
 #include <cstdio>

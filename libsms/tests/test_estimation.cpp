@@ -107,15 +107,24 @@ TEST_CASE("a fit recovers what made the data, and names a start outside the boun
   CHECK(boxed.at_bound[0]);
   CHECK(boxed.params.bore_diameter == doctest::Approx(0.1001));
 
-  // Bore and pressure gain cannot be told apart when all pressure is in the lower chamber: the pulled one stays.
+  // Bore and gain of a gauge cannot be told apart when one chamber is open: the pulled one stays.
+  truth.pressure_friction = 0.0;
   est::CylinderRecord single = record_of(truth, 100, random);
+  for (int i = 0; i < 100; ++i) {
+    single.rod_force[i] =
+        sms::rod_force(truth, sms::Piston<double>{single.extension[i], single.velocity[i], single.acceleration[i],
+                                                  single.pressure_lower[i], truth.ambient_pressure});
+    single.pressure_lower[i] = 1.02 * (single.pressure_lower[i] - truth.ambient_pressure);
+  }
+  single.gauge_lower = true;
   single.pressure_upper.resize(0);
   const est::CylinderProblem twin({single});
   const est::Fit pulled = est::fit(
       twin, truth,
-      {{sms::index_of_bore_diameter, 0.09, 0.11, 1e-3}, {sms::index_of_sensor_gain_chamber_pressure_lower, -0.5, 0.5}},
+      {{sms::index_of_bore_diameter, 0.09, 0.11, 1e3}, {sms::index_of_sensor_gain_chamber_pressure_lower, -0.5, 0.5}},
       Eigen::VectorXd());
   CHECK(pulled.params.bore_diameter == doctest::Approx(truth.bore_diameter).epsilon(1e-6));
+  CHECK(pulled.params.sensor_gain_chamber_pressure_lower == doctest::Approx(0.02).epsilon(1e-4));
 
   CHECK_THROWS_WITH_AS(est::fit(problem, truth, {{sms::index_of_bore_diameter, 0.09, 0.1}}, {}),
                        doctest::Contains("bore_diameter"), std::invalid_argument);

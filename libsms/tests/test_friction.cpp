@@ -37,8 +37,8 @@ TEST_CASE("friction is odd in velocity and acceleration") {
 TEST_CASE("limits: no acceleration, no velocity, next to none") {
   CHECK(same_bits(friction_at(0.0, 0.0), 0.0));
   CHECK(friction_at(0.0, 1.0) == doctest::Approx(0.0));
-  CHECK(friction_at(0.1, 0.0) == doctest::Approx(38.0 + 53.0));          // no Stribeck term at a = 0
-  CHECK(friction_at(0.1, 1e-300) == doctest::Approx(38.0 + 53.0));       // nor next to it
+  CHECK(friction_at(0.1, 0.0) == doctest::Approx(38.0 + 53.0));     // no Stribeck term at a = 0
+  CHECK(friction_at(0.1, 1e-300) == doctest::Approx(38.0 + 53.0));  // nor next to it
   CHECK(friction_at(1e-8, 0.0) == doctest::Approx(38.0 * 3.14159265358979 / 0.01 * 1e-8));
   CHECK(friction_at(0.005, 1e9) == doctest::Approx(77.27 + 530.0 * 0.005));  // a -> inf: the whole static force
 }

@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
-from sms import _core
+from sms import _core, cli_mechanism
 from sms.io.errors import InputError
 
 app = typer.Typer(
@@ -90,6 +90,9 @@ def diagnose(
     console = Console()
     print_diagnosis(answer, console)
     console.print(f"[dim]written: {', '.join(str(f) for f in files)}[/dim]", soft_wrap=True)
+
+
+cli_mechanism.register(app)
 
 
 def main() -> None:

@@ -60,7 +60,9 @@ def test_factor_agrees_with_pint(si_unit: str, label: str, factor: float) -> Non
 def test_every_parameter_has_a_readable_unit() -> None:
     for row in PARAMETERS.values():
         text = format_quantity(1.25, row.unit, row.name)
-        assert text != MISSING and "^" not in text and "Pa" not in text, row.name
+        assert text != MISSING and "^" not in text and "Pa" not in text.replace("µPa s", ""), (
+            row.name
+        )
 
 
 def plain(text: str) -> str:

@@ -12,7 +12,13 @@
 //
 //   alpha = sin(pi |v| / (2 eps))   for |v| < eps,   1 beyond                               (eq. 6.7)
 //
-// Valid for sliding. Inside eps a loaded piston creeps instead of sticking; true stiction needs a pre-sliding model.
+// With a Stribeck velocity that stays v_S whatever the acceleration this is eq. 6.2; with one branch and without the
+// ramp it is eq. 6.1, the same law as eq. 4.33.
+//
+// Valid for sliding. Inside eps a loaded piston creeps instead of sticking; true stiction needs a pre-sliding model,
+// see friction_dynamic.hpp. As friction depends on the acceleration that it changes, a force balance has to be solved
+// for it: force_balance.hpp.
+//
 // Limits: at a = 0 the Stribeck velocity |a| zeta v_S is zero and so is the term; at v = 0 the force is zero with slope
 // (pi / (2 eps)) [F_C2], which the sine carries exactly, derivatives included.
 //
@@ -49,21 +55,24 @@ S friction_ramp(const S& velocity, const S& stiction_velocity) {
   return velocity < S(0) ? S(-1) : S(1);
 }
 
-// exp(-|v / width|^delta), the fall from static to Coulomb friction. Zero for width -> 0, derivatives included: with
-// delta >= 0.5 (its bound) the term underflows long before |v| reaches a million widths, where it is cut.
+// |v / width|^delta, held at 1000 from a million widths on: with delta >= 0.5 (its bound) it is no less there, and exp
+// of its negative has long underflowed. So width -> 0 needs no case of its own, derivatives included.
 template <typename S>
-S stribeck_fall(const S& velocity, const S& width, const S& exponent) {
+S stribeck_power(const S& velocity, const S& width, const S& exponent) {
   using std::abs;
-  using std::exp;
   using std::pow;
   const S speed = abs(velocity);
   if (!(speed < S(1e6) * width)) {
-    return S(0);
+    return S(1e3);
   }
-  if (!(speed > S(0))) {
-    return S(1);
-  }
-  return exp(-pow(speed / width, exponent));
+  return speed > S(0) ? S(pow(speed / width, exponent)) : S(0);
+}
+
+// exp(-|v / width|^delta), the fall from static to Coulomb friction.
+template <typename S>
+S stribeck_fall(const S& velocity, const S& width, const S& exponent) {
+  using std::exp;
+  return exp(-stribeck_power(velocity, width, exponent));
 }
 
 // F_UE (exp(gamma |v|) - 1), eq. 6.6; the exponent is held at 50, far beyond any speed of a cylinder, to stay finite.
@@ -75,9 +84,23 @@ S exponential_friction(const Params<S>& p, const S& velocity) {
   return p.exponential_friction_force * (exp(growth < S(50) ? growth : S(50)) - S(1));
 }
 
-// Friction force, N, positive against extension: eq. 6.5 to 6.7 with the effects on friction.
+// Growth of dry friction where the bore is narrower than at mid-stroke, 1 without position_dependent_friction.
 template <typename S>
-S friction(const Params<S>& p, const Piston<S>& piston) {
+S position_factor(const Params<S>& p, const Piston<S>& piston) {
+  const S beyond_mid_stroke = piston.extension - S(0.5) * p.stroke;
+  return S(1) + p.position_friction * beyond_mid_stroke;
+}
+
+// What the seals make of their dry friction (Coulomb and Stribeck), N: the effects that act on it, and eq. 6.6.
+template <typename S>
+S seal_force(const Params<S>& p, const Piston<S>& piston, const S& dry) {
+  const S pressing = piston.pressure_lower + piston.pressure_upper - S(2) * p.ambient_pressure;
+  return dry * position_factor(p, piston) + p.pressure_friction * pressing + exponential_friction(p, piston.velocity);
+}
+
+// Eq. 6.2 and 6.5 with a given Stribeck velocity, m/s.
+template <typename S>
+S friction_of_width(const Params<S>& p, const Piston<S>& piston, const S& width) {
   using std::abs;
   const S& v = piston.velocity;
   const S& a = piston.acceleration;
@@ -88,26 +111,41 @@ S friction(const Params<S>& p, const Piston<S>& piston) {
   S slope = p.viscous_friction;
   S stribeck = S(0);
   if (speeding_up) {
-    const S width = abs(a) * p.stribeck_acceleration_factor * p.stribeck_velocity;
     stribeck = (p.stiction_force - p.coulomb_force) * stribeck_fall(v, width, p.stribeck_exponent);
   } else {
     coulomb += p.coulomb_force_deceleration_change;
     slope += p.viscous_friction_deceleration_change;
   }
-
-  const S beyond_mid_stroke = piston.extension - S(0.5) * p.stroke;
-  const S pressing = piston.pressure_lower + piston.pressure_upper - S(2) * p.ambient_pressure;
-  const S seal = (coulomb + stribeck) * (S(1) + p.position_friction * beyond_mid_stroke) +
-                 p.pressure_friction * pressing + exponential_friction(p, v);
+  const S seal = seal_force<S>(p, piston, coulomb + stribeck);
   return ramp * seal + abs(ramp) * (slope * v + p.direction_friction);
 }
 
-// The simple friction law, eq. 4.33: static and Coulomb force, one slope, no dependence on acceleration. It jumps at
-// v = 0, where it is zero by sgn(0) = 0.
+// Friction force, N, positive against extension: eq. 6.5 to 6.7 with the effects on friction.
+template <typename S>
+S friction(const Params<S>& p, const Piston<S>& piston) {
+  using std::abs;
+  return friction_of_width<S>(p, piston,
+                              abs(piston.acceleration) * p.stribeck_acceleration_factor * p.stribeck_velocity);
+}
+
+// Eq. 6.2: the acceleration only chooses the branch.
+template <typename S>
+S friction_two_branch(const Params<S>& p, const Piston<S>& piston) {
+  return friction_of_width(p, piston, p.stribeck_velocity);
+}
+
+// F_C + (F_S - F_C) exp(-|v / v_S|^delta), N
+template <typename S>
+S stribeck_force(const Params<S>& p, const S& velocity) {
+  const S fall = stribeck_fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
+  return p.coulomb_force + (p.stiction_force - p.coulomb_force) * fall;
+}
+
+// The simple friction law, eq. 4.33 and 6.1: static and Coulomb force, one slope, no dependence on acceleration. It
+// jumps at v = 0, where it is zero by sgn(0) = 0.
 template <typename S>
 S friction_stribeck(const Params<S>& p, const S& velocity) {
-  const S fall = stribeck_fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
-  const S dry = p.coulomb_force + (p.stiction_force - p.coulomb_force) * fall;
+  const S dry = stribeck_force(p, velocity);
   const S sign = velocity > S(0) ? S(1) : (velocity < S(0) ? S(-1) : S(0));
   return p.viscous_friction * velocity + sign * dry;
 }

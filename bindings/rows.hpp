@@ -1,0 +1,110 @@
+// Calls of the C ABI over the rows of numpy arrays: one status a row, NaN where it failed, both cores for many rows.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <initializer_list>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "bind.hpp"
+
+namespace sms_python {
+
+// n rows of so many numbers, as they lie in memory in C.
+using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+// One number a row, as far apart in memory as numpy keeps them.
+using Column = py::array_t<double, py::array::forcecast>;
+using Status = py::array_t<int>;
+
+inline py::ssize_t row_count(const Rows& rows, py::ssize_t width) {
+  if (rows.ndim() != 2 || rows.shape(1) != width) {
+    throw py::value_error("an array of shape (n, " + std::to_string(width) + ") is needed");
+  }
+  return rows.shape(0);
+}
+
+// Row i of every array belongs to row i of the others.
+inline py::ssize_t common_row_count(std::initializer_list<const Rows*> arrays, py::ssize_t width) {
+  const py::ssize_t n = row_count(**arrays.begin(), width);
+  for (const Rows* array : arrays) {
+    if (row_count(*array, width) != n) {
+      throw py::value_error("as many rows in every array are needed");
+    }
+  }
+  return n;
+}
+
+inline py::ssize_t common_size(std::initializer_list<const Column*> columns) {
+  for (const Column* column : columns) {
+    if (column->ndim() != 1 || column->size() != (*columns.begin())->size()) {
+      throw py::value_error("as many numbers in every array are needed");
+    }
+  }
+  return (*columns.begin())->size();
+}
+
+// Rows that a call writes.
+class Output {
+ public:
+  Output(py::ssize_t rows, py::ssize_t width) : array_({rows, width}), data_(array_.mutable_data()), width_(width) {}
+  double* row(py::ssize_t i) const { return data_ + i * width_; }
+  template <typename Struct>
+  Struct* row_as(py::ssize_t i) const {
+    return reinterpret_cast<Struct*>(row(i));
+  }
+  void clear(py::ssize_t i) const { std::fill_n(row(i), width_, std::numeric_limits<double>::quiet_NaN()); }
+  const Rows& array() const { return array_; }
+
+ private:
+  Rows array_;
+  double* data_;
+  py::ssize_t width_;
+};
+
+// work(begin, end) over all rows, in blocks that as many threads as there are cores take one after the other.
+template <typename Work>
+void in_blocks(py::ssize_t rows, const Work& work) {
+  constexpr py::ssize_t kBlock = 4096, kRowsThatPay = 20000;
+  const py::gil_scoped_release no_python;
+  if (rows < kRowsThatPay) {
+    work(py::ssize_t(0), rows);
+    return;
+  }
+  std::atomic<py::ssize_t> next{0};
+  const auto take = [&] {
+    for (py::ssize_t begin = next.fetch_add(kBlock); begin < rows; begin = next.fetch_add(kBlock)) {
+      work(begin, std::min(begin + kBlock, rows));
+    }
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) {
+    others.push_back(std::async(std::launch::async, take));
+  }
+  take();
+  for (std::future<void>& other : others) {
+    other.get();
+  }
+}
+
+// call(i), which gives a status, for every row; outputs of a row that failed become NaN.
+template <typename Call>
+Status each_row(py::ssize_t rows, std::initializer_list<const Output*> outputs, const Call& call) {
+  Status status(rows);
+  int* const written = status.mutable_data();
+  in_blocks(rows, [&](py::ssize_t begin, py::ssize_t end) {
+    for (py::ssize_t i = begin; i < end; ++i) {
+      written[i] = call(i);
+      if (written[i] != SMS_OK) {
+        for (const Output* output : outputs) {
+          output->clear(i);
+        }
+      }
+    }
+  });
+  return status;
+}
+
+}  // namespace sms_python

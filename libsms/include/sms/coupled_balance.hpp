@@ -1,0 +1,170 @@
+// The force balance of three pistons that carry one platform, with friction that depends on their accelerations.
+//
+//   M a + F_f(v, a) = F        three equations; M, kg, symmetric and positive definite, couples them
+//
+// In the coordinates of the mechanism its equations of motion read M_q q'' + bias = J^T (F_pistons - F_f); along the
+// actuators, with a = J q'' + J' q', that is M = J^-T M_q J^-1 and everything else in F. Each friction rises with its
+// own acceleration (force_balance.hpp, F_S >= F_C), so the left-hand side is the gradient of a strictly convex function
+// of a: the solution is unique.
+//
+// Newton's method finds it in some four steps nearly always. Where it does not settle, the pistons are solved one after
+// the other for a while, each exactly, by the scalar balance, which on a convex function always comes nearer; a piston
+// that then stays between its two branches is held at a = 0, and Newton's method tries again. A last Newton step in S
+// carries exact derivatives.
+#pragma once
+
+#include "sms/force_balance.hpp"
+
+namespace sms {
+
+namespace detail {
+
+// One piston's friction over its acceleration, and the slope; plain numbers.
+template <typename V>
+struct FrictionCurve {
+  FrictionBranches<V> branch;  // in the direction of motion
+  V direction;
+  V speed;
+  V width;
+  V exponent;
+};
+
+template <typename S>
+FrictionCurve<S> friction_curve(const Params<S>& p, const Piston<S>& piston) {
+  using std::abs;
+  const S direction = piston.velocity < S(0) ? S(-1) : S(1);
+  const FrictionBranches<S> b = friction_branches(p, piston);
+  return {{direction * b.slowing, direction * b.starting, direction * b.rise},
+          direction,
+          abs(piston.velocity),
+          p.stribeck_acceleration_factor * p.stribeck_velocity,
+          p.stribeck_exponent};
+}
+
+template <typename S>
+FrictionCurve<ValueOf<S>> value_of(const FrictionCurve<S>& c) {
+  using sms::value_of;
+  return {{value_of(c.branch.slowing), value_of(c.branch.starting), value_of(c.branch.rise)},
+          value_of(c.direction),
+          value_of(c.speed),
+          value_of(c.width),
+          value_of(c.exponent)};
+}
+
+// Friction (value) and its slope over the acceleration.
+template <typename S>
+Fall<S> friction_over(const FrictionCurve<S>& c, const S& acceleration) {
+  const S ahead = c.direction * acceleration;
+  if (!(ahead > S(0))) {
+    return {c.direction * c.branch.slowing, S(0)};
+  }
+  const Fall<S> fall = fall_at(ahead, c.speed, c.width, c.exponent);
+  return {c.direction * (c.branch.starting + c.branch.rise * fall.value), c.branch.rise * fall.slope};
+}
+
+// a of mass a + friction(a) = force for one piston.
+template <typename V>
+V solve_one(const FrictionCurve<V>& c, const V& mass, const V& force) {
+  const V ahead = c.direction * force;
+  if (!(ahead > c.branch.slowing)) {
+    return c.direction * (ahead - c.branch.slowing) / mass;
+  }
+  const V excess = ahead - c.branch.starting;
+  return excess > V(0) ? c.direction * solve_speeding_up(mass, c.branch.rise, excess, c.speed, c.width, c.exponent)
+                       : V(0);
+}
+
+// One Newton step, a vector to be added; a piston that is `held` keeps its a = 0.
+template <typename S>
+Vec3<S> newton_step(const FrictionCurve<S> (&curve)[3], const bool (&held)[3], const Mat3<S>& mass,
+                    const Vec3<S>& drive, const Vec3<S>& a) {
+  Mat3<S> slope = mass;
+  Vec3<S> off = drive - mass * a;
+  for (int i = 0; i < 3; ++i) {
+    if (held[i]) {
+      slope.row(i).setZero();
+      slope(i, i) = S(1);
+      off(i) = S(0);
+      continue;
+    }
+    const Fall<S> friction = friction_over(curve[i], a(i));
+    slope(i, i) += friction.slope;
+    off(i) -= friction.value;
+  }
+  return inverse(slope) * off;
+}
+
+template <typename V>
+V largest(const Vec3<V>& v) {
+  return v.cwiseAbs().maxCoeff();
+}
+
+// Newton's method from a; false, and a as it was, when it does not settle, or a held piston would have to move.
+template <typename V>
+bool solve_together(const FrictionCurve<V> (&curve)[3], const bool (&held)[3], const Mat3<V>& mass,
+                    const Vec3<V>& drive, Vec3<V>& a) {
+  Vec3<V> next = a;
+  bool settled = false;
+  for (int i = 0; i < 8 && !settled; ++i) {
+    const Vec3<V> step = newton_step(curve, held, mass, drive, next);
+    next += step;
+    settled = largest(step) <= V(64) * std::numeric_limits<V>::epsilon() * largest(next);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const V left = curve[i].direction * (drive(i) - mass.row(i).dot(next));
+    settled = settled && !(held[i] && (left < curve[i].branch.slowing || left > curve[i].branch.starting));
+  }
+  if (settled) {
+    a = next;
+  }
+  return settled;
+}
+
+// One piston after the other, some twenty times, with the others' accelerations as they are.
+template <typename V>
+void solve_in_turn(const FrictionCurve<V> (&curve)[3], bool (&held)[3], const Mat3<V>& mass, const Vec3<V>& drive,
+                   Vec3<V>& a) {
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    for (int i = 0; i < 3; ++i) {
+      const V others = mass.row(i).dot(a) - mass(i, i) * a(i);
+      a(i) = solve_one<V>(curve[i], mass(i, i), drive(i) - others);
+      held[i] = !(a(i) < V(0)) && !(a(i) > V(0)) && curve[i].branch.starting > curve[i].branch.slowing;
+    }
+  }
+}
+
+}  // namespace detail
+
+// Accelerations of the three pistons, m/s^2, under eq. 6.5; their own `acceleration` is not read. SMS_NOT_CONVERGED for
+// a mass that is not positive definite; a stays as it was.
+template <typename S>
+sms_status coupled_accelerations(const Params<S>& p, const Piston<S> (&piston)[3], const Mat3<S>& mass,
+                                 const Vec3<S>& drive, Vec3<S>& acceleration) {
+  using V = ValueOf<S>;
+  detail::FrictionCurve<S> curve[3];
+  detail::FrictionCurve<V> plain[3];
+  Mat3<V> plain_mass;
+  for (int i = 0; i < 3; ++i) {
+    curve[i] = detail::friction_curve(p, piston[i]);
+    plain[i] = detail::value_of(curve[i]);
+    for (int k = 0; k < 3; ++k) {
+      plain_mass(i, k) = value_of(mass(i, k));
+    }
+  }
+  bool held[3] = {false, false, false};
+  const Vec3<V> force = value_of(drive);
+  Vec3<V> a = Vec3<V>::Zero();
+  bool found = detail::solve_together<V>(plain, held, plain_mass, force, a);
+  for (int round = 0; round < 50 && !found; ++round) {
+    detail::solve_in_turn<V>(plain, held, plain_mass, force, a);
+    found = detail::solve_together<V>(plain, held, plain_mass, force, a);
+  }
+  if (!found || !is_finite(a)) {
+    return SMS_NOT_CONVERGED;
+  }
+  const Vec3<S> start(S(a(0)), S(a(1)), S(a(2)));
+  acceleration = start + detail::newton_step(curve, held, mass, drive, start);
+  return SMS_OK;
+}
+
+}  // namespace sms

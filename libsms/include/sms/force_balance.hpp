@@ -1,0 +1,173 @@
+// Newton's second law of a piston whose friction depends on the acceleration that it changes (dissertation, eq. 6.5).
+//
+//   M a = F - F_f(v, a)
+//
+// F is all that drives the piston but friction. This is an equation for a, not a formula: to use the acceleration of
+// one sample before delays the friction by a sample and lets it ring. It is solved here, for v > 0 (v < 0 mirrored):
+//
+//   slowing down   F_f = F_2, whatever a:   a = (F - F_2) / M, if that is not positive
+//   speeding up    F_f = F_1 + D exp(-(v / (a zeta v_S))^delta):   one scalar equation for a > 0
+//   between        F lies between F_2 and F_1, neither branch holds:   a = 0
+//
+// For D >= 0 (F_S >= F_C) the right-hand side of  M a + F_f(a) = F  rises with a, so the solution is unique. It is
+// bracketed by 0 and (F - F_1) / M; Newton's method runs inside the bracket, and bisects where it would leave it or
+// does not halve the step. Then one more Newton step is made in the scalar S, which carries exact derivatives.
+//
+// Laws whose friction does not depend on the acceleration go through the same door, so that a plant names its law and
+// nothing else changes.
+#pragma once
+
+#include <limits>
+
+#include "sms/friction_dynamic.hpp"
+#include "sms/scalar.hpp"
+
+namespace sms {
+
+enum class FrictionLaw : int {
+  acceleration_dependent,  // eq. 6.5, the source's own
+  two_branch,              // eq. 6.2
+  stribeck,                // eq. 6.1 and 4.33
+  dahl,                    // with a deflection of the seals
+  lugre                    // with a deflection of the seals, elasto-plastic
+};
+
+// What a motion costs and does; all laws fill it.
+template <typename S>
+struct ForceBalance {
+  S acceleration;     // m/s^2
+  S friction;         // N, positive against extension
+  S deflection_rate;  // z', m/s; 0 for laws without one
+};
+
+namespace detail {
+
+// F_f against the direction of motion: `slowing`, or `starting` + `rise` exp(-(speed / (a width))^delta).
+template <typename S>
+struct FrictionBranches {
+  S slowing;   // F_2
+  S starting;  // F_1
+  S rise;      // D
+};
+
+template <typename S>
+FrictionBranches<S> friction_branches(const Params<S>& p, const Piston<S>& piston) {
+  using std::abs;
+  const S& v = piston.velocity;
+  const S ramp = friction_ramp(v, p.stiction_velocity);
+  const S factor = position_factor(p, piston);
+  const S starting =
+      ramp * seal_force(p, piston, p.coulomb_force) + abs(ramp) * (p.viscous_friction * v + p.direction_friction);
+  const S change =
+      ramp * factor * p.coulomb_force_deceleration_change + abs(ramp) * v * p.viscous_friction_deceleration_change;
+  return {starting + change, starting, ramp * factor * (p.stiction_force - p.coulomb_force)};
+}
+
+// exp(-(speed / (a width))^delta) and its derivative by a, for a > 0.
+template <typename S>
+struct Fall {
+  S value;
+  S slope;
+};
+
+template <typename S>
+Fall<S> fall_at(const S& acceleration, const S& speed, const S& width, const S& exponent) {
+  using std::exp;
+  const S power = stribeck_power<S>(speed, acceleration * width, exponent);
+  const S value = exp(-power);
+  return {value, value * exponent * power / acceleration};
+}
+
+// a > 0 with  mass a + rise fall(a) = excess,  for plain numbers and excess > 0.
+template <typename V>
+V solve_speeding_up(const V& mass, const V& rise, const V& excess, const V& speed, const V& width, const V& exponent) {
+  using std::abs;
+  const V small = V(4) * std::numeric_limits<V>::epsilon();
+  const int bound = 3 * std::numeric_limits<V>::digits;
+  V low = V(0), high = (rise < V(0) ? excess - rise : excess) / mass;
+  V a = high, last_step = high;
+  for (int i = 0; i < bound && high - low > small * high; ++i) {
+    const Fall<V> fall = fall_at(a, speed, width, exponent);
+    const V off = mass * a + rise * fall.value - excess;
+    (off > V(0) ? high : low) = a;
+    V next = a - off / (mass + rise * fall.slope);
+    const V step = abs(next - a);
+    if (step <= small * a) {
+      return next;
+    }
+    if (!(next > low && next < high) || step > V(0.5) * last_step) {
+      next = low + V(0.5) * (high - low);
+    }
+    last_step = abs(next - a);
+    a = next;
+  }
+  return a;
+}
+
+}  // namespace detail
+
+// a of eq. 6.5; `piston.acceleration` is not read. mass in kg, drive in N.
+template <typename S>
+S acceleration_against_friction(const Params<S>& p, const Piston<S>& piston, const S& mass, const S& drive) {
+  using std::abs;
+  const S direction = piston.velocity < S(0) ? S(-1) : S(1);
+  const detail::FrictionBranches<S> branch = detail::friction_branches(p, piston);
+  const S over_slowing = direction * (drive - branch.slowing);
+  if (!(over_slowing > S(0))) {
+    return direction * over_slowing / mass;
+  }
+  const S excess = direction * (drive - branch.starting);
+  if (!(excess > S(0))) {
+    return S(0);
+  }
+  const S rise = direction * branch.rise;
+  const S speed = abs(piston.velocity);
+  const S width = p.stribeck_acceleration_factor * p.stribeck_velocity;
+  const S a(detail::solve_speeding_up(value_of(mass), value_of(rise), value_of(excess), value_of(speed),
+                                      value_of(width), value_of(p.stribeck_exponent)));
+  const detail::Fall<S> fall = detail::fall_at(a, speed, width, p.stribeck_exponent);
+  return direction * (a - (mass * a + rise * fall.value - excess) / (mass + rise * fall.slope));
+}
+
+// a of eq. 6.2, where the acceleration only chooses the branch.
+template <typename S>
+S acceleration_against_two_branches(const Params<S>& p, const Piston<S>& piston, const S& mass, const S& drive) {
+  const S direction = piston.velocity < S(0) ? S(-1) : S(1);
+  Piston<S> changing = piston;
+  changing.acceleration = -direction;
+  const S over_slowing = drive - friction_two_branch(p, changing);
+  if (!(direction * over_slowing > S(0))) {
+    return over_slowing / mass;
+  }
+  changing.acceleration = direction;
+  const S excess = drive - friction_two_branch(p, changing);
+  return direction * excess > S(0) ? S(excess / mass) : S(0);
+}
+
+// The piston under any of the laws. `piston.acceleration` is not read; `deflection` is z where the law has one.
+template <typename S>
+ForceBalance<S> force_balance(const Params<S>& p, FrictionLaw law, const Piston<S>& piston, const S& deflection,
+                              const S& mass, const S& drive) {
+  switch (law) {
+    case FrictionLaw::acceleration_dependent: {
+      const S a = acceleration_against_friction(p, piston, mass, drive);
+      return {a, drive - mass * a, S(0)};
+    }
+    case FrictionLaw::two_branch: {
+      const S a = acceleration_against_two_branches(p, piston, mass, drive);
+      return {a, drive - mass * a, S(0)};
+    }
+    case FrictionLaw::stribeck: {
+      const S force = friction_stribeck(p, piston.velocity);
+      return {(drive - force) / mass, force, S(0)};
+    }
+    case FrictionLaw::dahl:
+    case FrictionLaw::lugre:
+      break;
+  }
+  const BristleFriction<S> bristle =
+      law == FrictionLaw::dahl ? dahl_friction(p, piston, deflection) : lugre_friction(p, piston, deflection);
+  return {(drive - bristle.force) / mass, bristle.force, bristle.deflection_rate};
+}
+
+}  // namespace sms

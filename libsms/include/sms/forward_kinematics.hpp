@@ -1,0 +1,236 @@
+// Forward kinematics: three extensions to the whole pose.
+//
+// Six distances determine six coordinates: Newton's method on |l_i|^2 = L_i^2 with its exact Jacobian. Lengths do not
+// care about axes; in axes that yaw with the platform the arms are Ry Rx p_i, the links
+//
+//   l_i = Ry Rx p_i + Rz(-yaw) ((x, y, -height) - b_i)
+//
+// and roll, pitch, height, yaw and the moves along these axes change |l_i|^2 / 2 by, with m_i = r_i x l_i,
+//
+//   m_x cos(pitch) - m_z sin(pitch),  m_y,  -l_z;   m_z,  l_x,  l_y
+//
+// The 6x6 system falls apart in two of 3x3: the Panhard rods give the parasitic coordinates (yaw, x, y) for any step of
+// the driven ones, the actuators give that step. Both matrices are well conditioned all over the stroke, so that
+// neither needs a pivot.
+//
+// There are eight more solutions at tilts above 40 deg: other machines. A pose beyond largest_angle() is refused.
+#pragma once
+
+#include "sms/links.hpp"
+#include "sms/newton.hpp"
+#include "sms/sms.h"
+
+namespace sms {
+
+// Sines and cosines of a pose's angles.
+template <typename S>
+struct PoseAngles {
+  SineCosine<S> roll;
+  SineCosine<S> pitch;
+  SineCosine<S> yaw;
+};
+
+template <typename S>
+inline PoseAngles<S> angles_of(const Pose<S>& pose) {
+  return {sine_cosine(pose.roll), sine_cosine(pose.pitch), sine_cosine(pose.yaw)};
+}
+
+// r_i and l_i in the yawed axes.
+template <typename S>
+struct YawedLink {
+  Vec3<S> arm;
+  Vec3<S> link;
+};
+
+template <typename S>
+inline YawedLink<S> yawed_link(const Geometry<S>& g, int i, const Pose<S>& pose, const PoseAngles<S>& angles) {
+  const Vec3<S> arm = tilted(angles.roll, angles.pitch, g.platform[i]);
+  const S x = pose.x - g.base[i](0), y = pose.y - g.base[i](1);
+  return {arm, Vec3<S>(arm(0) + angles.yaw.cosine * x + angles.yaw.sine * y,
+                       arm(1) + angles.yaw.cosine * y - angles.yaw.sine * x, arm(2) - pose.height - g.base[i](2))};
+}
+
+// Half the excess of each link's squared length, m^2.
+template <typename S>
+struct LinkExcess {
+  Vec3<S> actuator;
+  Vec3<S> panhard;
+};
+
+template <typename S>
+inline S half_excess(const Vec3<S>& link, const S& length) {
+  return S(0.5) * (link.squaredNorm() - length * length);
+}
+
+template <typename S>
+LinkExcess<S> link_excess(const Geometry<S>& g, const Vec3<S>& actuator_length, const Pose<S>& pose) {
+  const PoseAngles<S> angles = angles_of(pose);
+  LinkExcess<S> excess;
+  for (int i = 0; i < 3; ++i) {
+    excess.actuator(i) = half_excess(yawed_link(g, i, pose, angles).link, actuator_length(i));
+    excess.panhard(i) = half_excess(yawed_link(g, i + 3, pose, angles).link, g.panhard_length(i));
+  }
+  return excess;
+}
+
+template <typename V>
+V length_error(const LinkExcess<V>& excess, const Vec3<V>& actuator_length, const Vec3<V>& panhard_length) {
+  const V actuator = excess.actuator.cwiseQuotient(actuator_length).cwiseAbs().maxCoeff();
+  const V panhard = excess.panhard.cwiseQuotient(panhard_length).cwiseAbs().maxCoeff();
+  return actuator > panhard ? actuator : panhard;
+}
+
+// The linearised problem, ready to be solved for any excess.
+template <typename V>
+struct PoseSolver {
+  Elimination<V> eliminated;
+  Mat3<V> actuator_parasitic;
+  Mat3<V> actuator_inverse;
+  SineCosine<V> yaw;  // turns a move in the yawed axes into one of x and y
+};
+
+template <typename S>
+struct PoseStep {
+  Vec3<S> driven;     // roll, pitch, height
+  Vec3<S> parasitic;  // yaw, x, y
+};
+
+template <typename S, typename V>
+PoseStep<S> newton_step(const PoseSolver<V>& solver, const LinkExcess<S>& excess) {
+  const Vec3<S> held = solver.eliminated.panhard_inverse.template cast<S>() * excess.panhard;
+  const Vec3<S> left = solver.actuator_parasitic.template cast<S>() * held - excess.actuator;
+  PoseStep<S> step;
+  step.driven = solver.actuator_inverse.template cast<S>() * left;
+  const Vec3<S> yawed = solver.eliminated.parasitic.template cast<S>() * step.driven - held;
+  const S cosine = S(solver.yaw.cosine), sine = S(solver.yaw.sine);
+  step.parasitic << yawed(0), cosine * yawed(1) - sine * yawed(2), sine * yawed(1) + cosine * yawed(2);
+  return step;
+}
+
+template <typename S>
+inline void advance(Pose<S>& pose, const PoseStep<S>& step, const S& factor) {
+  pose.roll += factor * step.driven(0);
+  pose.pitch += factor * step.driven(1);
+  pose.height += factor * step.driven(2);
+  pose.yaw += factor * step.parasitic(0);
+  pose.x += factor * step.parasitic(1);
+  pose.y += factor * step.parasitic(2);
+}
+
+template <typename V>
+bool within_largest_angle(const Pose<V>& pose) {
+  using std::abs;
+  return abs(pose.roll) <= largest_angle<V>() && abs(pose.pitch) <= largest_angle<V>() &&
+         abs(pose.yaw) <= largest_angle<V>();
+}
+
+// Newton's method up to the last step. The solver is that of the last step taken.
+template <typename V>
+struct PoseSolution {
+  Pose<V> pose;
+  PoseSolver<V> solver;
+};
+
+template <typename V>
+inline void set_slope(Mat3<V>& driven, Mat3<V>& parasitic, int row, const YawedLink<V>& l, const SineCosine<V>& pitch) {
+  const Vec3<V> moment = cross(l.arm, l.link);
+  driven(row, 0) = moment(0) * pitch.cosine - moment(2) * pitch.sine;
+  driven(row, 1) = moment(1);
+  driven(row, 2) = -l.link(2);
+  parasitic(row, 0) = moment(2);
+  parasitic(row, 1) = l.link(0);
+  parasitic(row, 2) = l.link(1);
+}
+
+// Excess and slopes in one go.
+template <typename V>
+LinkExcess<V> evaluate_pose(const Geometry<V>& g, const Vec3<V>& length, const Pose<V>& pose, PoseSolver<V>& solver) {
+  const PoseAngles<V> angles = angles_of(pose);
+  LinkSlopes<V> slopes;
+  LinkExcess<V> excess;
+  for (int i = 0; i < 3; ++i) {
+    const YawedLink<V> actuator = yawed_link(g, i, pose, angles);
+    set_slope(slopes.actuator_driven, slopes.actuator_parasitic, i, actuator, angles.pitch);
+    excess.actuator(i) = half_excess(actuator.link, length(i));
+    const YawedLink<V> panhard = yawed_link(g, i + 3, pose, angles);
+    set_slope(slopes.panhard_driven, slopes.panhard_parasitic, i, panhard, angles.pitch);
+    excess.panhard(i) = half_excess(panhard.link, g.panhard_length(i));
+  }
+  solver.eliminated = eliminate_parasitic(slopes);
+  solver.actuator_parasitic = slopes.actuator_parasitic;
+  solver.actuator_inverse = inverse(solver.eliminated.actuator);
+  solver.yaw = angles.yaw;
+  return excess;
+}
+
+template <typename V>
+sms_status solve_pose(const Geometry<V>& g, const Vec3<V>& length, PoseSolution<V>& solution, int& iterations) {
+  for (iterations = 0; iterations < largest_iteration_count();) {
+    const LinkExcess<V> excess = evaluate_pose(g, length, solution.pose, solution.solver);
+    const PoseStep<V> step = newton_step(solution.solver, excess);
+    const V driven = step.driven.cwiseAbs().maxCoeff(), parasitic = step.parasitic.cwiseAbs().maxCoeff();
+    const V largest = driven > parasitic ? driven : parasitic;
+    advance(solution.pose, step, damping(largest));
+    ++iterations;
+    if (!within_largest_angle(solution.pose)) {
+      return SMS_OUT_OF_WORKSPACE;
+    }
+    if (largest < close_step<V>()) {
+      return SMS_OK;
+    }
+  }
+  return SMS_NOT_CONVERGED;
+}
+
+template <typename S, typename V>
+Pose<S> stepped(const Geometry<S>& g, const Vec3<S>& length, Pose<S> pose, const PoseSolver<V>& solver) {
+  advance(pose, newton_step(solver, link_excess(g, length, pose)), S(1));
+  return pose;
+}
+
+template <typename V>
+Pose<V> last_step_of_pose(const Geometry<V>& g, const Geometry<V>& /*the same*/, const Vec3<V>& length,
+                          const PoseSolution<V>& solution) {
+  return stepped(g, length, solution.pose, solution.solver);
+}
+
+// With derivatives: first in their values, then once more with the slope of the solution itself.
+template <typename S, typename V>
+Pose<S> last_step_of_pose(const Geometry<S>& g, const Geometry<V>& geometry, const Vec3<S>& length,
+                          const PoseSolution<V>& solution) {
+  const Pose<V> found = stepped(geometry, value_of(length), solution.pose, solution.solver);
+  PoseSolver<V> solver;
+  evaluate_pose(geometry, value_of(length), found, solver);
+  return stepped(g, length, cast<S>(found), solver);
+}
+
+// The search starts at `start`, which may be any pose of the built machine. On any status but SMS_OK the pose is as it
+// was.
+template <typename S>
+sms_status forward_kinematics(const Geometry<S>& g, const Vec3<S>& extension, const Pose<ValueOf<S>>& start,
+                              Pose<S>& pose, Convergence<ValueOf<S>>& convergence) {
+  using V = ValueOf<S>;
+  convergence = {0, std::numeric_limits<V>::quiet_NaN()};
+  if (!is_finite(extension) || !is_finite(start)) {
+    return SMS_NOT_A_NUMBER;
+  }
+  const Vec3<S> length = g.actuator_length + extension;
+  if (!(value_of(length).minCoeff() > V(0))) {
+    return SMS_OUT_OF_WORKSPACE;
+  }
+  const Geometry<V>& geometry = value_of(g);
+  PoseSolution<V> solution;
+  solution.pose = start;
+  const sms_status status = solve_pose(geometry, value_of(length), solution, convergence.iterations);
+  const Pose<S> found = last_step_of_pose(g, geometry, length, solution);
+  const Pose<V>& last = status == SMS_OK ? value_of(found) : solution.pose;
+  const LinkExcess<V> left = link_excess(geometry, value_of(length), last);
+  convergence.residual = length_error(left, value_of(length), geometry.panhard_length);
+  if (status != SMS_OK) {
+    return status;
+  }
+  pose = found;
+  return SMS_OK;
+}
+
+}  // namespace sms

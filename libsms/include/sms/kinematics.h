@@ -1,0 +1,183 @@
+/* libsms, kinematics of the platform on three actuators and three Panhard rods, for C. Part of sms.h, whose conventions
+ * hold here.
+ *
+ * Frames: right-handed, z points down, x is the roll axis; R = Rz(yaw) Ry(pitch) Rx(roll). The driven coordinates are
+ * q = (roll, pitch, height) in rad, rad, m; yaw, x and y follow from them by the rods and are called parasitic.
+ * A three-element array that holds q', q'' or an extension has one element a coordinate or actuator, in that order.
+ *
+ * Example: libsms/examples/02_kinematics.c */
+#ifndef SMS_KINEMATICS_H
+#define SMS_KINEMATICS_H
+
+#include "sms/sms.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- geometry (geometry.hpp) ------------------------------------------------------------------------------------- */
+/* Links 0 to 2 are the actuators, 3 to 5 the Panhard rods; link i joins B_i on the ground to P_i on the platform. */
+typedef struct sms_geometry {
+  double base[6][3];         /* B_i, m, world axes */
+  double platform[6][3];     /* P_i, m, from the reference point, platform axes */
+  double reference[3];       /* the reference point at rest, m: height, x and y of a pose are this point's */
+  double joint_axis[6][3];   /* ground-fixed axis of the universal joint at B_i, unit vector */
+  double actuator_length[3]; /* at zero extension, m */
+  double panhard_length[3];  /* m */
+  double stroke;             /* m */
+} sms_geometry;
+
+typedef struct sms_geometryf {
+  float base[6][3];
+  float platform[6][3];
+  float reference[3];
+  float joint_axis[6][3];
+  float actuator_length[3];
+  float panhard_length[3];
+  float stroke;
+} sms_geometryf;
+
+/* Made once from the parameters, then handed to every call; parameters changed later need a new one. */
+void sms_geometry_from_params(const sms_params *params, sms_geometry *geometry);
+void sms_geometry_from_paramsf(const sms_paramsf *params, sms_geometryf *geometry);
+
+typedef struct sms_pose {
+  double roll;   /* rad */
+  double pitch;  /* rad */
+  double height; /* of the reference point above ground, m */
+  double yaw;    /* rad */
+  double x;      /* of the reference point, m, world axes */
+  double y;      /* m */
+} sms_pose;
+
+typedef struct sms_posef {
+  float roll;
+  float pitch;
+  float height;
+  float yaw;
+  float x;
+  float y;
+} sms_posef;
+
+/* Level, all actuators retracted. */
+void sms_rest_pose(const sms_geometry *geometry, sms_pose *pose);
+void sms_rest_posef(const sms_geometryf *geometry, sms_posef *pose);
+
+/* ---- position (inverse_kinematics.hpp, forward_kinematics.hpp) --------------------------------------------------- */
+/* How an iteration ended; written whatever the status. */
+typedef struct sms_convergence {
+  int iterations;  /* Newton steps taken */
+  double residual; /* largest error of a link's length, m */
+} sms_convergence;
+
+typedef struct sms_convergencef {
+  int iterations;
+  float residual;
+} sms_convergencef;
+
+/* Extensions, yaw, x and y of q = (roll, pitch, height).
+ * start       where the search begins (its yaw, x, y): the last pose of a motion saves an iteration. NULL: the rest
+ * pose convergence may be NULL The stroke is no limit here: compare the extensions with 0 and geometry->stroke. start
+ * and pose may be the same. SMS_NOT_A_NUMBER, SMS_OUT_OF_WORKSPACE (tilt beyond 0.6 rad, or the rods do not reach),
+ * SMS_NOT_CONVERGED. */
+sms_status sms_inverse_kinematics(const sms_geometry *geometry, const double q[3], const sms_pose *start,
+                                  sms_pose *pose, double extension[3], sms_convergence *convergence);
+sms_status sms_inverse_kinematicsf(const sms_geometryf *geometry, const float q[3], const sms_posef *start,
+                                   sms_posef *pose, float extension[3], sms_convergencef *convergence);
+
+/* The pose of three extensions; start, convergence and statuses as above. */
+sms_status sms_forward_kinematics(const sms_geometry *geometry, const double extension[3], const sms_pose *start,
+                                  sms_pose *pose, sms_convergence *convergence);
+sms_status sms_forward_kinematicsf(const sms_geometryf *geometry, const float extension[3], const sms_posef *start,
+                                   sms_posef *pose, sms_convergencef *convergence);
+
+/* Lengths of all six links, m, where all six coordinates of the pose are free: the inverse kinematics of a
+ * Gough-Stewart platform (eq. 3.6). SMS_NOT_A_NUMBER. */
+sms_status sms_six_leg_inverse(const sms_geometry *geometry, const sms_pose *pose, double length[6]);
+sms_status sms_six_leg_inversef(const sms_geometryf *geometry, const sms_posef *pose, float length[6]);
+
+/* ---- velocity and acceleration (motion.hpp) ---------------------------------------------------------------------- */
+/* Everything that moves, in a pose that fits the rods: one that inverse or forward kinematics gave. */
+typedef struct sms_motion {
+  double qdot[3];                   /* (roll, pitch, height)', rad/s, rad/s, m/s */
+  double qddot[3];                  /* (roll, pitch, height)'', rad/s^2, rad/s^2, m/s^2 */
+  double parasitic_rate[3];         /* (yaw, x, y)', rad/s, m/s, m/s */
+  double parasitic_acceleration[3]; /* (yaw, x, y)'', rad/s^2, m/s^2, m/s^2 */
+  double extension_rate[3];         /* m/s */
+  double extension_acceleration[3]; /* m/s^2 */
+} sms_motion;
+
+typedef struct sms_motionf {
+  float qdot[3];
+  float qddot[3];
+  float parasitic_rate[3];
+  float parasitic_acceleration[3];
+  float extension_rate[3];
+  float extension_acceleration[3];
+} sms_motionf;
+
+/* From q' and q''. SMS_NOT_A_NUMBER. */
+sms_status sms_inverse_motion(const sms_geometry *geometry, const sms_pose *pose, const double qdot[3],
+                              const double qddot[3], sms_motion *motion);
+sms_status sms_inverse_motionf(const sms_geometryf *geometry, const sms_posef *pose, const float qdot[3],
+                               const float qddot[3], sms_motionf *motion);
+
+/* From the extensions' rates and accelerations. SMS_NOT_A_NUMBER. */
+sms_status sms_forward_motion(const sms_geometry *geometry, const sms_pose *pose, const double extension_rate[3],
+                              const double extension_acceleration[3], sms_motion *motion);
+sms_status sms_forward_motionf(const sms_geometryf *geometry, const sms_posef *pose, const float extension_rate[3],
+                               const float extension_acceleration[3], sms_motionf *motion);
+
+/* J = d extension / d(roll, pitch, height) along the rods' constraint, row i of actuator i; m/rad, m/rad, m/m.
+ * SMS_NOT_A_NUMBER. */
+sms_status sms_jacobian(const sms_geometry *geometry, const sms_pose *pose, double jacobian[3][3]);
+sms_status sms_jacobianf(const sms_geometryf *geometry, const sms_posef *pose, float jacobian[3][3]);
+
+/* d extension / d(roll, pitch, height, yaw, x, y) with all six coordinates free. SMS_NOT_A_NUMBER. */
+sms_status sms_pose_jacobian(const sms_geometry *geometry, const sms_pose *pose, double jacobian[3][6]);
+sms_status sms_pose_jacobianf(const sms_geometryf *geometry, const sms_posef *pose, float jacobian[3][6]);
+
+/* ---- workspace (workspace.hpp) ----------------------------------------------------------------------------------- */
+/* Stroke left over by the actuator nearest to one of its ends, m; negative outside. */
+double sms_stroke_margin(const sms_geometry *geometry, const double extension[3]);
+float sms_stroke_marginf(const sms_geometryf *geometry, const float extension[3]);
+
+/* Least stroke margin, m, on the edges of |roll| <= roll_limit, |pitch| <= pitch_limit (rad) at a height.
+ * SMS_NOT_A_NUMBER, SMS_OUT_OF_WORKSPACE, SMS_NOT_CONVERGED. */
+sms_status sms_rectangle_margin(const sms_geometry *geometry, double height, double roll_limit, double pitch_limit,
+                                double *margin);
+sms_status sms_rectangle_marginf(const sms_geometryf *geometry, float height, float roll_limit, float pitch_limit,
+                                 float *margin);
+
+/* The largest tilt that the stroke allows at a height in one direction, rad: roll = angle * direction_roll and pitch =
+ * angle * direction_pitch, a unit vector. SMS_NOT_A_NUMBER, SMS_OUT_OF_WORKSPACE: not even level fits. */
+sms_status sms_reach(const sms_geometry *geometry, double height, double direction_roll, double direction_pitch,
+                     double *angle);
+sms_status sms_reachf(const sms_geometryf *geometry, float height, float direction_roll, float direction_pitch,
+                      float *angle);
+
+/* How far the joints have turned from the rest pose, rad: link i against the ground and against the platform. */
+typedef struct sms_joint_angles {
+  double base[6];
+  double platform[6];
+} sms_joint_angles;
+
+typedef struct sms_joint_anglesf {
+  float base[6];
+  float platform[6];
+} sms_joint_anglesf;
+
+/* In a pose that fits the rods. SMS_NOT_A_NUMBER. */
+sms_status sms_joint_angles_at(const sms_geometry *geometry, const sms_pose *pose, sms_joint_angles *angles);
+sms_status sms_joint_angles_atf(const sms_geometryf *geometry, const sms_posef *pose, sms_joint_anglesf *angles);
+
+/* Distance from singularity, 1 is best: condition numbers in m and rad of the rods' lengths by (yaw, x, y), and of all
+ * six lengths by the whole pose. SMS_NOT_A_NUMBER. */
+sms_status sms_conditioning(const sms_geometry *geometry, const sms_pose *pose, double *panhard, double *links);
+sms_status sms_conditioningf(const sms_geometryf *geometry, const sms_posef *pose, float *panhard, float *links);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

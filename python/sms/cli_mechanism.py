@@ -1,0 +1,192 @@
+"""The commands `sms ik`, `sms fk` and `sms workspace`."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sms import StatusError, forward_kinematics, inverse_kinematics
+from sms._core import Params
+from sms.io.errors import InputError, did_you_mean
+from sms.kinematics import ForwardKinematics, InverseKinematics
+from sms.parameters import PARAMETERS
+
+AsJson = Annotated[
+    bool, typer.Option("--json", help="Print JSON, in SI units, for another program.")
+]
+Settings = Annotated[
+    list[str],
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A parameter other than its default, in SI units; may be repeated. "
+        "docs/parameters.md lists them.",
+    ),
+]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands."""
+    app.command(
+        epilog="Example: **sms ik --roll 5 --pitch -2 --height 0.5 --deg** prints the three "
+        "extensions for a roll of 5° and a pitch of −2° at mid-stroke."
+    )(ik)
+    app.command(epilog="Example: **sms fk --extension 0.2 0.21 0.19 --json**")(fk)
+    app.command(
+        epilog="Example: **sms workspace --set payload_mass=280** checks the specified payload; "
+        "look at workspace/workspace.html in a browser."
+    )(workspace)
+
+
+def ik(
+    roll: Annotated[float, typer.Option(help="Roll, rad (degrees with --deg).")],
+    pitch: Annotated[float, typer.Option(help="Pitch, rad (degrees with --deg).")],
+    height: Annotated[
+        float, typer.Option(help="Height of the top frame's centre of gravity above ground, m.")
+    ],
+    deg: Annotated[bool, typer.Option("--deg", help="Roll and pitch are in degrees.")] = False,
+    settings: Settings = [],  # noqa: B006 (typer copies it)
+    as_json: AsJson = False,
+) -> None:
+    """Inverse kinematics: the actuators' extensions for a roll, a pitch and a height."""
+    unit = math.pi / 180.0 if deg else 1.0
+    with bad_input():
+        params = machine(settings)
+        found = inverse_kinematics(unit * roll, unit * pitch, height, params=params)
+    extension = [float(e) for e in found.extension]
+    if as_json:
+        values = {"extension_m": extension, **_parasitic(found), **_convergence(found)}
+        print(json.dumps(values, indent=1))
+    else:
+        print(f"extension  {_millimetres(extension)}   (stroke 0 to {1e3 * params.stroke:g} mm)")
+        print(f"yaw        {_angle(found.yaw)}")
+        print(f"x, y       {_millimetres([float(found.x), float(found.y)])}")
+        print(_effort(found))
+    _warn_outside(extension, params, "the machine cannot reach this pose")
+
+
+def fk(
+    extension: Annotated[
+        tuple[float, float, float], typer.Option(help="Of the three actuators, m.")
+    ],
+    settings: Settings = [],  # noqa: B006 (typer copies it)
+    as_json: AsJson = False,
+) -> None:
+    """Forward kinematics: the platform's pose for three extensions."""
+    with bad_input():
+        params = machine(settings)
+        found = forward_kinematics(extension, params=params)
+    if as_json:
+        values = {
+            "roll_rad": float(found.roll),
+            "pitch_rad": float(found.pitch),
+            "height_m": float(found.height),
+            **_parasitic(found),
+            **_convergence(found),
+        }
+        print(json.dumps(values, indent=1))
+    else:
+        print(f"roll       {_angle(found.roll)}")
+        print(f"pitch      {_angle(found.pitch)}")
+        print(f"height     {_millimetres([float(found.height)])}")
+        print(f"yaw        {_angle(found.yaw)}")
+        print(f"x, y       {_millimetres([float(found.x), float(found.y)])}")
+        print(_effort(found))
+    _warn_outside(extension, params, "the machine cannot have these extensions")
+
+
+def workspace(
+    out: Annotated[Path, typer.Option(help="Folder for workspace.html and workspace.json.")] = Path(
+        "workspace"
+    ),
+    settings: Settings = [],  # noqa: B006 (typer copies it)
+    as_json: AsJson = False,
+) -> None:
+    """What the platform can reach: roll and pitch by height, with the required ranges drawn in.
+
+    Also the stroke left over, the joints' angles, the distance from singularity, and whether the
+    supply pressure can carry the payload.
+    """
+    from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
+    from sms.report.workspace import workspace_html  # noqa: PLC0415
+    from sms.workspace_findings import findings, to_dict  # noqa: PLC0415
+    from sms.workspace_survey import survey  # noqa: PLC0415
+
+    with bad_input():
+        surveyed = survey(machine(settings))
+    text = json.dumps(to_dict(surveyed), indent=1, ensure_ascii=False, allow_nan=False)
+    files = out / "workspace.html", out / "workspace.json"
+    write_text_atomically(files[0], workspace_html(surveyed))
+    write_text_atomically(files[1], text + "\n")
+    if as_json:
+        print(text)
+        return
+    for finding in findings(surveyed):
+        print(f"- {finding}")
+    print(f"written: {files[0]}, {files[1]}")
+
+
+@contextmanager
+def bad_input() -> Iterator[None]:
+    """A status of the core, raised by what a person typed, as the person's error."""
+    try:
+        yield
+    except StatusError as problem:
+        raise InputError(str(problem)) from None
+
+
+def machine(settings: Sequence[str]) -> Params:
+    """The default parameters with each "name=value" set. InputError, OutOfRangeError."""
+    params = Params()
+    for setting in settings:
+        name, equals, value = (part.strip() for part in setting.partition("="))
+        if not equals:
+            raise InputError(f"--set {setting}: write NAME=VALUE, for instance payload_mass=280")
+        if name not in PARAMETERS:
+            raise InputError(f"--set {setting}: {did_you_mean(name, PARAMETERS)}")
+        try:
+            params[name] = float(value)
+        except StatusError:
+            raise
+        except ValueError:
+            unit = PARAMETERS[name].unit
+            raise InputError(f"--set {setting}: '{value}' is not a number in {unit}") from None
+    return params
+
+
+def _parasitic(found: InverseKinematics | ForwardKinematics) -> dict[str, float]:
+    return {"yaw_rad": float(found.yaw), "x_m": float(found.x), "y_m": float(found.y)}
+
+
+def _convergence(found: InverseKinematics | ForwardKinematics) -> dict[str, float]:
+    return {"iterations": int(found.iterations), "residual_m": float(found.residual)}
+
+
+def _effort(found: InverseKinematics | ForwardKinematics) -> str:
+    return f"{int(found.iterations)} Newton steps, residual {float(found.residual):.1g} m"
+
+
+def _angle(angle: object) -> str:
+    value = float(angle)  # type: ignore[arg-type]
+    return f"{math.degrees(value):.5f}°   ({value:.7f} rad)"
+
+
+def _millimetres(values: Sequence[float]) -> str:
+    return "  ".join(f"{1e3 * value:.4f}" for value in values) + " mm"
+
+
+def _warn_outside(extension: Sequence[float], params: Params, so: str) -> None:
+    for number, value in enumerate(extension, 1):
+        if not 0.0 <= value <= params.stroke:
+            print(
+                f"sms: extension {number} = {value:.4f} m is outside the stroke, 0 to "
+                f"{params.stroke:g} m: {so}",
+                file=sys.stderr,
+            )

@@ -1,0 +1,1 @@
+"""The mechanism in two independent multibody codes, held against the core."""
