@@ -16,7 +16,7 @@ using Pose = sms::Pose<double>;
 
 // A node without a solution.
 struct Failure {
-  std::size_t row;
+  std::size_t roll;  // its index
   sms::Vec3<double> q;
   sms_status status;
 };
@@ -33,9 +33,8 @@ Pose extrapolated(const std::vector<Pose>& solved) {
   return {a.roll, a.pitch, a.height, next(a.yaw, b.yaw, c.yaw), next(a.x, b.x, c.x), next(a.y, b.y, c.y)};
 }
 
-// Row number r is one roll and one height; its nodes are the pitches.
-std::optional<Failure> solve_row(const sms::Geometry<double>& geometry, std::size_t row, Table& table) {
-  const std::size_t heights = table.height.size(), i = row / heights, l = row % heights;
+// A row is one roll and one height; its nodes are the pitches.
+std::optional<Failure> solve_row(const sms::Geometry<double>& geometry, std::size_t i, std::size_t l, Table& table) {
   const Pose rest = sms::rest_pose(geometry);
   std::vector<Pose> solved = {rest};
   solved.reserve(table.pitch.size() + 1);
@@ -49,13 +48,13 @@ std::optional<Failure> solve_row(const sms::Geometry<double>& geometry, std::siz
       status = sms::inverse_kinematics(geometry, q, rest, pose, extension, convergence);
     }
     if (status != SMS_OK) {
-      return Failure{row, q, status};
+      return Failure{i, q, status};
     }
     if (k == 0) {
       solved.clear();  // the rest pose is no node
     }
     solved.push_back(pose);
-    double* node = &table.extension[3 * ((i * table.pitch.size() + k) * heights + l)];
+    double* node = &table.extension[3 * ((i * table.pitch.size() + k) * table.height.size() + l)];
     std::copy_n(extension.data(), 3, node);
   }
   return std::nullopt;
@@ -86,22 +85,26 @@ std::vector<double> nodes(double lower, double upper, int count, Precision preci
 }
 
 void solve(const sms::Geometry<double>& geometry, unsigned threads, Progress& progress, Table& table) {
-  const std::size_t rows = table.roll.size() * table.height.size();
-  table.extension.resize(3 * rows * table.pitch.size());
+  const std::size_t rolls = table.roll.size();
+  table.extension.resize(3 * rolls * table.pitch.size() * table.height.size());
   std::atomic<std::size_t> next{0}, done{0};
   std::mutex mutex;
   std::optional<Failure> first;
+  // A thread takes all heights of a roll, which lie next to each other in memory.
   const auto work = [&] {
-    for (std::size_t row = next++; row < rows; row = next++) {
-      const std::optional<Failure> failure = solve_row(geometry, row, table);
+    for (std::size_t i = next++; i < rolls; i = next++) {
+      std::optional<Failure> failure;
+      for (std::size_t l = 0; l < table.height.size() && !failure; ++l) {
+        failure = solve_row(geometry, i, l, table);
+      }
       if (failure) {
         const std::lock_guard<std::mutex> lock(mutex);
-        if (!first || failure->row < first->row) {
+        if (!first || failure->roll < first->roll) {
           first = failure;
         }
-        next = rows;
+        next = rolls;
       }
-      progress.share(double(++done) / double(rows));
+      progress.share(double(++done) / double(rolls));
     }
   };
   std::vector<std::thread> helpers;

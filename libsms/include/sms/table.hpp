@@ -1,8 +1,7 @@
 // A table of extensions in place of the solver (dissertation, section 3.5): lookup and interpolation.
 //
 // Somebody solved the inverse kinematics beforehand, at evenly spaced nodes of roll and pitch, for one height or for
-// several; ik_tables does that. Between the nodes, with t in 0..1 the place within a cell, each coordinate on its own
-// is
+// several; ik_tables does that. Between the nodes, coordinate by coordinate, with t in 0..1 the place within a cell:
 //
 //   linear:  (1 - t) f_0 + t f_1                                error about h^2 f'' / 8
 //   cubic:   the Catmull-Rom spline, which is cubic convolution with a = -1/2 (R. Keys, IEEE Trans. Acoustics, Speech
@@ -12,8 +11,8 @@
 // through the last three nodes, f_-1 = 3 f_0 - 3 f_1 + f_2, so that a quadratic is reproduced everywhere. That goes
 // into the weights here, and no node outside is read.
 //
-// A lookup takes the same time wherever it falls, allocates nothing and calls nothing. It never extrapolates. The
-// numbers stay where the caller has them: in flash. For float and double.
+// A lookup does the same work wherever it falls, but for a branch at the edges; it allocates nothing, calls nothing and
+// never extrapolates. The numbers stay where the caller has them: in flash. For float and double.
 #pragma once
 
 #include "sms/scalar.hpp"
