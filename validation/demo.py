@@ -61,11 +61,9 @@ def hidden_effect(out: Path, seed: int, console: Console) -> None:
         )
         or answer.verdict
     )
-    console.print(
-        f"\nverdict: [bold]{said}[/bold]\ntruth:   [bold]{hidden}[/bold] = {truth['value']:.4g} "
-        f"{truth['unit']}",
-        soft_wrap=True,
-    )
+    unit = "" if truth["unit"] == "1" else f" {truth['unit']}"
+    console.print(f"\nverdict: [bold]{said}[/bold]", soft_wrap=True)
+    console.print(f"truth:   [bold]{hidden}[/bold] = {truth['value']:.4g}{unit}", soft_wrap=True)
 
 
 def _one_of_the_catalogue(seed: int) -> str:
