@@ -2,19 +2,10 @@
 
 from __future__ import annotations
 
-import json
-from importlib.resources import files
-
-from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
-
 from sms.diagnosis.result import Diagnosis
 from sms.report import curves, related, search, verdict, worth
-from sms.report.markup import esc, section
-
-# The browser itself refuses to load anything from elsewhere.
-_POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
-)
+from sms.report.markup import section
+from sms.report.page import page, plots
 
 
 def report_html(diagnosis: Diagnosis) -> str:
@@ -53,33 +44,8 @@ def report_html(diagnosis: Diagnosis) -> str:
         f'<nav aria-label="Parts of this page">{links}</nav>'
         f"{''.join(content for _, content in parts.values())}</main>"
     )
-    return _page(diagnosis.title or diagnosis.rig, body, _script(diagnosis))
-
-
-def _page(title: str, body: str, script: str) -> str:
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>Diagnosis: {esc(title)}</title><style>{_asset('style.css')}</style></head>"
-        f"<body>{body}{script}</body></html>\n"
-    )
-
-
-def _asset(name: str) -> str:
-    return files("sms.report").joinpath(name).read_text(encoding="utf-8")
-
-
-def _script(diagnosis: Diagnosis) -> str:
-    """Plotly, the curves and what draws them; nothing when there are no curves."""
-    if not diagnosis.series:
-        return ""
-    data = json.dumps(curves.payload(diagnosis), allow_nan=False).replace("<", "\\u003c")
-    return (
-        f"<script>{get_plotlyjs()}</script>"
-        f'<script type="application/json" id="curve-data">{data}</script>'
-        f"<script>{_asset('figures.js')}</script>"
-    )
+    script = plots(curves.payload(diagnosis), "figures.js") if diagnosis.series else ""
+    return page(f"Diagnosis: {diagnosis.title or diagnosis.rig}", body, script)
 
 
 def _curves(diagnosis: Diagnosis) -> str:

@@ -1,7 +1,7 @@
-// Draws the page's curves with Plotly from the JSON in #curve-data. Colours come from style.css.
+// Draws the page's curves with Plotly from the JSON in #plot-data. Colours come from style.css.
 "use strict";
 (() => {
-  const data = JSON.parse(document.getElementById("curve-data").textContent);
+  const data = JSON.parse(document.getElementById("plot-data").textContent);
   const root = document.documentElement;
   const touch = matchMedia("(pointer: coarse)").matches;
   const dark = matchMedia("(prefers-color-scheme: dark)");
