@@ -76,10 +76,13 @@ typedef struct sms_convergencef {
 } sms_convergencef;
 
 /* Extensions, yaw, x and y of q = (roll, pitch, height).
- * start       where the search begins (its yaw, x, y): the last pose of a motion saves an iteration. NULL: the rest
- * pose convergence may be NULL The stroke is no limit here: compare the extensions with 0 and geometry->stroke. start
- * and pose may be the same. SMS_NOT_A_NUMBER, SMS_OUT_OF_WORKSPACE (tilt beyond 0.6 rad, or the rods do not reach),
- * SMS_NOT_CONVERGED. */
+ *
+ *   start        where the search begins (its yaw, x, y): the last pose of a motion saves an iteration.
+ *                NULL: the rest pose. It may be the very pose that is written.
+ *   convergence  may be NULL.
+ *
+ * The stroke is no limit here: compare the extensions with 0 and geometry->stroke. SMS_NOT_A_NUMBER,
+ * SMS_OUT_OF_WORKSPACE (tilt beyond 0.6 rad, or the rods do not reach), SMS_NOT_CONVERGED. */
 sms_status sms_inverse_kinematics(const sms_geometry *geometry, const double q[3], const sms_pose *start,
                                   sms_pose *pose, double extension[3], sms_convergence *convergence);
 sms_status sms_inverse_kinematicsf(const sms_geometryf *geometry, const float q[3], const sms_posef *start,
