@@ -1,4 +1,4 @@
-"""How fast is it, and against what? `./dev bench [--json FILE]`.
+"""How fast is it, and against what? `./dev bench [--peers] [--json FILE]`.
 
 Every row is one measurement beside the peer that a user would take today: same data, same result,
 one run on this machine. The machine's speed is in both numbers; the ratio carries over to others.
@@ -15,22 +15,30 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from validation import bench_friction
+from validation import bench_friction, bench_mechanism, bench_simulators
 from validation.timing import Row
 
 COMPILED = Path("build/bench/libsms/bench/sms_bench")
 
 
 def compiled_values() -> dict[str, float]:
-    """What the timing programs of libsms/bench print: value by name."""
+    """What the timing programs of libsms/bench print: nanoseconds of one call by name."""
     lines = subprocess.run([COMPILED], check=True, capture_output=True, text=True).stdout
-    return {name: float(value) for name, value, _ in (s.split("\t") for s in lines.splitlines())}
+    return {name: float(time) for name, time, _ in (s.split("\t") for s in lines.splitlines())}
 
 
-def measurements() -> list[Row]:
+def measurements(install_peers: bool) -> list[Row]:
     """Every row, subject by subject."""
     compiled = compiled_values()
-    return [*bench_friction.friction_rows(compiled), *bench_friction.fit_rows()]
+    return [
+        *bench_friction.friction_rows(compiled),
+        *bench_friction.fit_rows(),
+        *bench_mechanism.inverse_rows(compiled),
+        *bench_mechanism.motion_rows(compiled),
+        *bench_simulators.simulation_rows(compiled["simulation step"] * 1e-3, install_peers),
+        *bench_mechanism.batch_rows(compiled),
+        *bench_mechanism.instruction_rows(COMPILED),
+    ]
 
 
 def table_of(rows: list[Row]) -> Table:
@@ -55,8 +63,11 @@ def main() -> None:
     """Measure, print the table, write the rows."""
     parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write one row a measurement")
+    parser.add_argument(
+        "--peers", action="store_true", help="install the simulators to compare with, 1 GB"
+    )
     options = parser.parse_args()
-    rows = measurements()
+    rows = measurements(options.peers)
     Console(width=120).print(table_of(rows))
     if options.json:
         options.json.write_text(json.dumps([asdict(r) for r in rows], indent=1) + "\n")

@@ -47,13 +47,22 @@ def row(
     name: str,
     value: float,
     unit: str,
-    peer: tuple[str, float] | None = None,
+    peer: tuple[str, float | None] | None = None,
     goal: Goal | None = None,
 ) -> Row:
-    """A measurement beside its peer (name, value in the same unit) and its goal."""
+    """A measurement beside its peer and its goal, which without the peer's value is not judged.
+
+    Args:
+        name: of the measurement.
+        value: measured.
+        unit: of `value`.
+        peer: name, and value in the same unit; None where it could not be measured.
+        goal: to be met.
+    """
     peer_name, peer_value = peer if peer is not None else (None, None)
     ratio = None if peer_value is None else peer_value / value
-    met = None if goal is None else goal.met(value, ratio)
+    open_question = peer is not None and peer_value is None
+    met = None if goal is None or open_question else goal.met(value, ratio)
     return Row(
         name, value, unit, peer_name, peer_value, ratio, None if goal is None else str(goal), met
     )

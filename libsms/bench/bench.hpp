@@ -4,33 +4,42 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 
 namespace sms_bench {
 
-// How often each piece of work is done, at most; main() takes it from the command line. A round should be short, about
-// a millisecond, so that some of them pass without an interruption.
+// What main() takes from the command line: how often each piece of work is done at most, and which alone, if not all.
+// A round should be short, about a millisecond, so that some of them pass without an interruption.
 inline int rounds = 500;
+inline const char* only = nullptr;
 
-// Nanoseconds of one call, when work() makes `calls` of them.
+inline bool wanted(const char* name) { return !only || std::strcmp(only, name) == 0; }
+
+// Of its own, so that callgrind can be told to count what happens inside.
 template <typename Work>
-double nanoseconds_per_call(int calls, const Work& work) {
+[[gnu::noinline]] void counted_round(const Work& work) {
+  work();
+}
+
+// Times work(), which makes so many calls, and prints a line that validation/bench.py reads: name, tab, nanoseconds of
+// one call, tab, number of calls.
+template <typename Work>
+void measure(const char* name, int calls, const Work& work) {
   using Nanoseconds = std::chrono::duration<double, std::nano>;
   constexpr double kPatience = 3e9;
+  if (!wanted(name)) {
+    return;
+  }
   double best = std::numeric_limits<double>::infinity(), total = 0.0;
   for (int round = 0; round < rounds && total < kPatience; ++round) {
     const auto start = std::chrono::steady_clock::now();
-    work();
+    counted_round(work);
     const double elapsed = Nanoseconds(std::chrono::steady_clock::now() - start).count();
     best = std::min(best, elapsed / calls);
     total += elapsed;
   }
-  return best;
-}
-
-// One line that validation/bench.py reads: name, tab, value, tab, unit.
-inline void report(const char* name, double value, const char* unit) {
-  std::printf("%s\t%.6g\t%s\n", name, value, unit);
+  std::printf("%s\t%.6g\t%d\n", name, best, calls);
 }
 
 // One function a subject, each in its file.

@@ -24,17 +24,16 @@ std::vector<Piston> random_pistons() {
 }
 
 template <typename Real, typename Params, typename Piston>
-void measure(const char* name, const Params& params, Real (*equation)(const Params*, const Piston*)) {
+void one_call_a_sample(const char* name, const Params& params, Real (*equation)(const Params*, const Piston*)) {
   const std::vector<Piston> pistons = random_pistons<Piston, Real>();
   volatile Real sum = Real(0);  // volatile: the result is used, so the work is done
-  const double time = nanoseconds_per_call(kSamples, [&] {
+  measure(name, kSamples, [&] {
     Real total = Real(0);
     for (const Piston& piston : pistons) {
       total += equation(&params, &piston);
     }
     sum = total;
   });
-  report(name, time, "ns");
 }
 
 }  // namespace
@@ -42,10 +41,10 @@ void measure(const char* name, const Params& params, Real (*equation)(const Para
 void friction() {
   sms_params params;
   sms_params_default(&params);
-  measure("friction", params, &sms_friction);
+  one_call_a_sample("friction", params, &sms_friction);
   sms_paramsf paramsf;
   sms_params_defaultf(&paramsf);
-  measure("friction, float", paramsf, &sms_frictionf);
+  one_call_a_sample("friction, float", paramsf, &sms_frictionf);
 }
 
 }  // namespace sms_bench

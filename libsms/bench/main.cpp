@@ -1,4 +1,4 @@
-// usage: sms_bench [ROUNDS]; one round is what callgrind is given to count instructions in.
+// usage: sms_bench [ROUNDS [NAME]]; one round of one measurement is what callgrind counts instructions in.
 #include <cstdlib>
 
 #include "bench.hpp"
@@ -6,6 +6,9 @@
 int main(int argc, char** argv) {
   if (argc > 1) {
     sms_bench::rounds = std::atoi(argv[1]);
+  }
+  if (argc > 2) {
+    sms_bench::only = argv[2];
   }
   sms_bench::friction();
   sms_bench::mechanism();

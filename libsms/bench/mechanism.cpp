@@ -83,13 +83,12 @@ std::vector<Sample<Real>> ship_motion() {
 
 // call(sample), which gives a status, for every sample of the motion.
 template <typename Real, typename Call>
-void measure(const char* name, const std::vector<Sample<Real>>& motion, const Call& call) {
-  const double time = nanoseconds_per_call(kSamples, [&] {
+void along(const std::vector<Sample<Real>>& motion, const char* name, const Call& call) {
+  measure(name, kSamples, [&] {
     for (const Sample<Real>& sample : motion) {
       require(call(sample));
     }
   });
-  report(name, time, "ns");
 }
 
 void in_double() {
@@ -98,16 +97,14 @@ void in_double() {
   const std::vector<Sample<double>> motion = ship_motion<double>();
   sms_pose pose = machine.rest;
   double out[3];
-  measure("inverse kinematics, warm", motion,
-          [&](const Sample<double>& s) { return sms_inverse_kinematics(&geometry, s.q, &pose, &pose, out, nullptr); });
-  measure("inverse kinematics, from rest", motion, [&](const Sample<double>& s) {
-    return sms_inverse_kinematics(&geometry, s.q, nullptr, &pose, out, nullptr);
-  });
+  along(motion, "inverse kinematics, warm",
+        [&](const Sample<double>& s) { return sms_inverse_kinematics(&geometry, s.q, &pose, &pose, out, nullptr); });
+  along(motion, "inverse kinematics, from rest",
+        [&](const Sample<double>& s) { return sms_inverse_kinematics(&geometry, s.q, nullptr, &pose, out, nullptr); });
   pose = machine.rest;
-  measure("forward kinematics, warm", motion, [&](const Sample<double>& s) {
-    return sms_forward_kinematics(&geometry, s.extension, &pose, &pose, nullptr);
-  });
-  measure("forward dynamics", motion, [&](const Sample<double>& s) {
+  along(motion, "forward kinematics, warm",
+        [&](const Sample<double>& s) { return sms_forward_kinematics(&geometry, s.extension, &pose, &pose, nullptr); });
+  along(motion, "forward dynamics", [&](const Sample<double>& s) {
     return sms_forward_dynamics(&machine.mechanism, s.q, s.qdot, s.force, nullptr, nullptr, out);
   });
 }
@@ -118,11 +115,10 @@ void in_float() {
   const std::vector<Sample<float>> motion = ship_motion<float>();
   sms_posef pose = machine.rest;
   float out[3];
-  measure("inverse kinematics, warm, float", motion,
-          [&](const Sample<float>& s) { return sms_inverse_kinematicsf(&geometry, s.q, &pose, &pose, out, nullptr); });
-  measure("forward kinematics, warm, float", motion, [&](const Sample<float>& s) {
-    return sms_forward_kinematicsf(&geometry, s.extension, &pose, &pose, nullptr);
-  });
+  along(motion, "inverse kinematics, warm, float",
+        [&](const Sample<float>& s) { return sms_inverse_kinematicsf(&geometry, s.q, &pose, &pose, out, nullptr); });
+  along(motion, "forward kinematics, warm, float",
+        [&](const Sample<float>& s) { return sms_forward_kinematicsf(&geometry, s.extension, &pose, &pose, nullptr); });
 }
 
 // Free swinging on three springs, every step by the classical fourth-order Runge-Kutta method.
@@ -167,13 +163,12 @@ class Swing {
 void simulation() {
   constexpr int kSteps = 200;
   Swing swing;
-  const double time = nanoseconds_per_call(kSteps, [&] {
+  measure("simulation step", kSteps, [&] {
     swing.start();
     for (int i = 0; i < kSteps; ++i) {
       swing.step(kTimeStep);
     }
   });
-  report("simulation step", time, "ns");
 }
 
 // The table of section 3.5 by ik_tables' own loop, on one core.
@@ -184,12 +179,15 @@ void table() {
   table.roll = table.pitch = ik_tables::nodes(-0.1, 0.1, 201, table.precision);
   table.height = {0.5};
   const sms::Geometry<double> geometry = sms::make_geometry(sms::Params<double>());
-  const double time = nanoseconds_per_call(1, [&] { ik_tables::solve(geometry, 1, quiet, table); });
-  report("table", time * 1e-6, "ms");
+  measure("table", 1, [&] { ik_tables::solve(geometry, 1, quiet, table); });
 }
 
 // A million unrelated poses, all that is known of each kept: what sms.inverse_kinematics of Python does.
 void batch() {
+  constexpr const char* kName = "inverse kinematics, batch";
+  if (!wanted(kName)) {
+    return;
+  }
   constexpr int kPoses = 1000000;
   const Machine<double> machine;
   std::mt19937_64 engine(1);
@@ -201,13 +199,12 @@ void batch() {
   std::vector<sms_pose> pose(kPoses);
   std::vector<double> extension(3 * kPoses);
   std::vector<sms_convergence> convergence(kPoses);
-  const double time = nanoseconds_per_call(kPoses, [&] {
+  measure(kName, kPoses, [&] {
     for (std::size_t i = 0; i < kPoses; ++i) {
       require(sms_inverse_kinematics(&machine.mechanism.geometry, &q[3 * i], nullptr, &pose[i], &extension[3 * i],
                                      &convergence[i]));
     }
   });
-  report("inverse kinematics, batch", time, "ns");
 }
 
 }  // namespace

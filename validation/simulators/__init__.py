@@ -1,0 +1,1 @@
+"""One simulation step of the mechanism in general-purpose simulators, timed in their own environment."""
