@@ -14,7 +14,7 @@ namespace sms_bench {
 inline int rounds = 500;
 inline const char* only = nullptr;
 
-inline bool wanted(const char* name) { return !only || std::strcmp(only, name) == 0; }
+inline bool wanted(const char* name) { return only == nullptr || std::strcmp(only, name) == 0; }
 
 // Of its own, so that callgrind can be told to count what happens inside.
 template <typename Work>

@@ -197,7 +197,7 @@ void batch() {
     q.insert(q.end(), {angle(engine), angle(engine), height(engine)});
   }
   std::vector<sms_pose> pose(kPoses);
-  std::vector<double> extension(3 * kPoses);
+  std::vector<double> extension(std::size_t{3} * kPoses);
   std::vector<sms_convergence> convergence(kPoses);
   measure(kName, kPoses, [&] {
     for (std::size_t i = 0; i < kPoses; ++i) {
