@@ -58,7 +58,7 @@ class Rods:
         return np.stack([cp * x + sp * across, cr * y - sr * z, cp * across - sp * x], axis=-1)
 
 
-def misfit(rods: Rods, tilted: Array, height: float, x_y_yaw: Array) -> Array:
+def misfit(rods: Rods, tilted: Array, height: np.float64, x_y_yaw: Array) -> Array:
     """How much too long the three rods are for one pose, m."""
     x, y, yaw = x_y_yaw
     turn = np.array([[np.cos(yaw), -np.sin(yaw), 0.0], [np.sin(yaw), np.cos(yaw), 0.0], [0, 0, 1]])
