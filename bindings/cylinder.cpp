@@ -1,6 +1,6 @@
 // Friction and force balance of one cylinder, over numpy arrays that broadcast.
 #include "bind.hpp"
-#include "sms/actuator.hpp"
+#include "sms/piston.hpp"
 
 namespace sms_python {
 namespace {

@@ -12,6 +12,7 @@ PYBIND11_MODULE(_core, m) {
   sms_python::bind_pneumatics(m);
   sms_python::bind_friction(m);
   sms_python::bind_controller(m);
+  sms_python::bind_plant(m);
 #ifdef SMS_WITH_ESTIMATION
   sms_python::bind_estimation(m);
   m.attr("has_estimation") = true;

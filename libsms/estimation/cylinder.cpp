@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "estimation/jets.hpp"
-#include "sms/actuator.hpp"
+#include "sms/piston.hpp"
 #include "sms/sensor.hpp"
 
 namespace sms {

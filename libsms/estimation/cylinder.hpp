@@ -1,6 +1,6 @@
 // The rig "cylinder": one cylinder is moved, its extension, chamber pressures and rod force are measured.
 //
-// The force balance (actuator.hpp) is fed with the measured motion and pressures, corrected by the sensors' errors, and
+// The force balance (piston.hpp) is fed with the measured motion and pressures, corrected by the sensors' errors, and
 // predicts what the load cell reads. No differential equation is solved: each sample stands alone.
 #pragma once
 

@@ -7,7 +7,7 @@
 #include "estimation/cylinder.hpp"
 #include "estimation/fit.hpp"
 #include "random_cases.hpp"
-#include "sms/actuator.hpp"
+#include "sms/piston.hpp"
 
 namespace est = sms::estimation;
 

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "random_cases.hpp"
-#include "sms/actuator.hpp"
+#include "sms/piston.hpp"
 #include "sms/sensor.hpp"
 
 namespace {

@@ -220,7 +220,8 @@ TEST_CASE("three coupled pistons: Newton's law for each with its own friction, w
     }
     const sms::Mat3<double> mass = root * root.transpose() + 5.0 * sms::Mat3<double>::Identity();
     sms::Vec3<double> a;
-    REQUIRE(sms::coupled_accelerations(p, piston, mass, drive, a) == SMS_OK);
+    REQUIRE(sms::coupled_accelerations<double>({p, p, p}, sms::FrictionLaw::acceleration_dependent, piston, mass, drive,
+                                               a) == SMS_OK);
     const sms::Vec3<double> left = drive - mass * a;  // what friction has to take up
     const double scale = 1e-10 * (mass.norm() * a.norm() + drive.norm());
     for (int i = 0; i < 3; ++i) {
@@ -242,14 +243,16 @@ TEST_CASE("three pistons that are not coupled are three single ones; a mass that
     const Piston piston[3] = {at(random.uniform(-0.2, 0.2)), at(random.uniform(-0.2, 0.2)), at(0.0)};
     const sms::Vec3<double> drive(random.uniform(-300.0, 300.0), random.uniform(-300.0, 300.0), 50.0);
     sms::Vec3<double> a;
-    REQUIRE(sms::coupled_accelerations<double>(p, piston, 106.0 * sms::Mat3<double>::Identity(), drive, a) == SMS_OK);
+    REQUIRE(sms::coupled_accelerations<double>({p, p, p}, sms::FrictionLaw::acceleration_dependent, piston,
+                                               106.0 * sms::Mat3<double>::Identity(), drive, a) == SMS_OK);
     for (int i = 0; i < 3; ++i) {
       CHECK(a(i) == doctest::Approx(sms::acceleration_against_friction(p, piston[i], 106.0, drive(i))).epsilon(1e-11));
     }
   }
   const Piston piston[3] = {at(0.1), at(0.1), at(0.1)};
   sms::Vec3<double> untouched(1.0, 2.0, 3.0);
-  CHECK(sms::coupled_accelerations<double>(p, piston, sms::Mat3<double>::Zero(), sms::Vec3<double>(1e3, 0.0, 0.0),
+  CHECK(sms::coupled_accelerations<double>({p, p, p}, sms::FrictionLaw::acceleration_dependent, piston,
+                                           sms::Mat3<double>::Zero(), sms::Vec3<double>(1e3, 0.0, 0.0),
                                            untouched) == SMS_NOT_CONVERGED);
   CHECK(same_bits(untouched(1), 2.0));
 }

@@ -219,7 +219,8 @@ TEST_CASE("and so do three coupled ones") {
       sms::Mat3<S> mass = sms::Mat3<S>::Constant(S(-56.0));
       mass.diagonal().setConstant(x[3]);
       sms::Vec3<S> a(S(0.0), S(0.0), S(0.0));
-      REQUIRE(sms::coupled_accelerations<S>(p, piston, mass, sms::Vec3<S>(x[1], x[2], S(140.0)), a) == SMS_OK);
+      REQUIRE(sms::coupled_accelerations<S>({p, p, p}, sms::FrictionLaw::acceleration_dependent, piston, mass,
+                                            sms::Vec3<S>(x[1], x[2], S(140.0)), a) == SMS_OK);
       return a(0) + S(2.0) * a(1) + S(3.0) * a(2);
     };
     check_derivatives<5>(model, {1.0, random.uniform(-300.0, 300.0), random.uniform(-300.0, 300.0), 223.0, 77.27},

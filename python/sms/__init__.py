@@ -36,6 +36,13 @@ from sms.kinematics import (
     pose_jacobian,
     six_leg_inverse,
 )
+from sms.simulation import (
+    Run,
+    SimulationStoppedError,
+    extensions_of,
+    simulate_bench,
+    simulate_platform,
+)
 
 __all__ = [
     "Energies",
@@ -49,11 +56,14 @@ __all__ = [
     "OutOfRangeError",
     "OutOfWorkspaceError",
     "Params",
+    "Run",
+    "SimulationStoppedError",
     "StatusError",
     "__version__",
     "bias_force",
     "eigenfrequencies",
     "energies",
+    "extensions_of",
     "forward_dynamics",
     "forward_kinematics",
     "forward_motion",
@@ -68,5 +78,7 @@ __all__ = [
     "mass_matrix",
     "pose_jacobian",
     "rod_force",
+    "simulate_bench",
+    "simulate_platform",
     "six_leg_inverse",
 ]

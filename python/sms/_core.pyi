@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CylinderProblem', 'CylinderRecord', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'Problem', 'StatusError', 'air_spring', 'alpha_beta', 'build_info', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchSimulation', 'CylinderProblem', 'CylinderRecord', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'air_spring', 'alpha_beta', 'build_info', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -709,6 +709,14 @@ class Params:
         """
     @outflow_heat_ratio.setter
     def outflow_heat_ratio(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def panhard_friction(self) -> float:
+        """
+        panhard_friction: viscous moment of the joints of one Panhard rod per its turning speed [N m s/rad]; neutral
+        """
+    @panhard_friction.setter
+    def panhard_friction(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def panhard_inertia_axial(self) -> float:
@@ -1550,6 +1558,76 @@ class Params:
     @wall_temperature.setter
     def wall_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
+class BenchSimulation:
+    """
+    One actuator under sampled control (simulate.hpp).
+    """
+    def __init__(self, *, params: Params, controller: Params, valve_law: str, friction_law: str, chamber_law: str, control: str, compensated: bool, electronics: bool, extension: typing.SupportsFloat | typing.SupportsIndex, load_force: typing.SupportsFloat | typing.SupportsIndex, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def advance(self, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], load: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+        """
+        (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
+        """
+    @property
+    def columns(self) -> list[str]:
+        """
+        What each column of a row is.
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Of the plant's derivative, so far.
+        """
+    @property
+    def rejected(self) -> int:
+        """
+        Steps that were tried again smaller, so far.
+        """
+    @property
+    def steps(self) -> int:
+        """
+        Of the integrator, so far.
+        """
+    @property
+    def time(self) -> float:
+        """
+        s, where the plant is.
+        """
+class PlatformSimulation:
+    """
+    The platform under sampled control (simulate.hpp).
+    """
+    def __init__(self, *, params: typing.Annotated[collections.abc.Sequence[Params], "FixedSize(3)"], controller: Params, valve_law: str, friction_law: str, chamber_law: str, masses: typing.SupportsInt | typing.SupportsIndex, control: str, compensated: bool, electronics: bool, q: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], mean_pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def advance(self, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], load: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+        """
+        (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
+        """
+    @property
+    def columns(self) -> list[str]:
+        """
+        What each column of a row is.
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Of the plant's derivative, so far.
+        """
+    @property
+    def rejected(self) -> int:
+        """
+        Steps that were tried again smaller, so far.
+        """
+    @property
+    def steps(self) -> int:
+        """
+        Of the integrator, so far.
+        """
+    @property
+    def time(self) -> float:
+        """
+        s, where the plant is.
+        """
 class CylinderRecord:
     """
     The compared samples of one record of the rig 'cylinder', as read; arrays (n,), SI.

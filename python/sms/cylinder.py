@@ -1,4 +1,4 @@
-"""Forces of one pneumatic cylinder. Equations: libsms/include/sms/friction.hpp, actuator.hpp."""
+"""Forces of one pneumatic cylinder. Equations: libsms/include/sms/friction.hpp, piston.hpp."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def forward_dynamics(
         external_force=(_EXTERNAL_FORCE, external_force),
         external_moment=(_EXTERNAL_MOMENT, external_moment),
     )
-    qddot, status = _core.forward_dynamics(params, _model(masses), *rows.parts)
+    qddot, status = _core.forward_dynamics(params, mass_model_number(masses), *rows.parts)
     rows.check(status, allowed_poses, params)
     return rows.shaped(qddot, 3)
 
@@ -120,7 +120,7 @@ def inverse_dynamics(
         external_force=(_EXTERNAL_FORCE, external_force),
         external_moment=(_EXTERNAL_MOMENT, external_moment),
     )
-    force, status = _core.inverse_dynamics(params, _model(masses), *rows.parts)
+    force, status = _core.inverse_dynamics(params, mass_model_number(masses), *rows.parts)
     rows.check(status, allowed_poses, params)
     return rows.shaped(force, 3)
 
@@ -227,7 +227,8 @@ def eigenfrequencies(
     )
 
 
-def _model(masses: str) -> int:
+def mass_model_number(masses: str) -> int:
+    """The core's number of a reading of the mass table; ValueError that names them."""
     names = _core.mass_models()
     if masses not in names:
         raise ValueError(f"masses is {masses!r}; it must be one of {', '.join(names)}")
@@ -243,7 +244,7 @@ def _terms(q: ArrayLike, qdot: ArrayLike, masses: str, params: Params | None) ->
     """Rows of sms_dynamics: pose 0:6, J 6:15, M 15:24, b 24:27, g 27:30, T 30, U 31."""
     params = params or Params()
     rows = vectors(q=(Q, q), qdot=(QDOT, qdot))
-    terms, status = _core.dynamics_terms(params, _model(masses), *rows.parts)
+    terms, status = _core.dynamics_terms(params, mass_model_number(masses), *rows.parts)
     rows.check(status, allowed_poses, params)
     return rows, terms
 
@@ -266,6 +267,6 @@ def _linear(
         stiffness=(_STIFFNESS, _all_three(stiffness)),
         damping=(_DAMPING, _all_three(damping)),
     )
-    model, status = _core.linearise(params, _model(masses), *rows.parts)
+    model, status = _core.linearise(params, mass_model_number(masses), *rows.parts)
     rows.check(status, allowed_poses, params)
     return rows, model

@@ -1,48 +1,149 @@
-// The force balance of one pneumatic cylinder (dissertation, eq. 6.4 and 4.34).
+// A pneumatic actuator whole: valve, two chambers, seals, ends of the stroke (dissertation, section 4.1 and figure 4.1).
 //
-//   (M_L + M_p) a = p_a A_a - p_b A_b - p_A A_r - F_f - F_L
+//   command -> filter -> spool -> mass flows -> pressures -> force on the rod -> motion -> volumes -> pressures
+//              drive     valve    mass_flow     chamber      piston, end_stop              chamber
 //
-// a: the chamber that extends the rod, b: the one that retracts it, A_r = A_a - A_b the rod's section, on which the
-// ambient pressure p_A stands, F_f the friction, F_L the force of the rod on its load. A single-acting cylinder is the
-// same with its other chamber open: p_b = p_A, so that p_b A_b + p_A A_r = p_A A_a.
+// The motion is not in here: on the bench it is one force balance (bench.hpp), under the platform three that are coupled
+// (platform.hpp). Both hand over extension and velocity and take the force; what the air does between is the same.
+//
+// State of one actuator: pressures and temperatures of two chambers, the spool and what drives it, the deflection of the
+// seals, and the pressure of the reservoir in front of the valve. A law without one of these leaves it where it is.
 #pragma once
 
-#include "sms/friction.hpp"
+#include "sms/end_stop.hpp"
+#include "sms/force_balance.hpp"
+#include "sms/vessel.hpp"
 
 namespace sms {
 
-template <typename S>
-S circle_area(const S& diameter) {
-  return S(0.78539816339744831) * diameter * diameter;
+// What becomes of heat.
+enum class ChamberLaw : int {
+  polytropic,  // eq. 4.30: temperature constant, three ratios
+  energy       // temperature a state, heat through the wall
+};
+
+// Which law stands for which part.
+struct ActuatorLaws {
+  ValveLaw valve;
+  FrictionLaw friction;
+  ChamberLaw chamber;
+  bool drive_filter;  // the command passes the filter behind the pulse width (section 7.3.3)
+};
+
+inline constexpr ActuatorLaws published_laws() {
+  return {ValveLaw::iso_0_4_mpa, FrictionLaw::acceleration_dependent, ChamberLaw::polytropic, false};
 }
 
-// A_a, A_b, A_r, m^2
 template <typename S>
-struct PistonAreas {
-  S lower;
-  S upper;
-  S rod;
+struct ActuatorState {
+  Gas<S> lower;
+  Gas<S> upper;
+  Lag<S> spool;       // as the command that would hold it there: V, V/s
+  Lag<S> drive;       // voltage at the valve, V, V/s; with drive_filter
+  S deflection;       // of the seals, m; Dahl and LuGre
+  S supply_pressure;  // in the reservoir at the valve, Pa; with supply_line_resistance
+};
+
+// The air at one pose and rate; filled by fill_chambers().
+template <typename S>
+struct ActuatorTerms {
+  ChamberSpace<S> lower;
+  ChamberSpace<S> upper;
+  ValvePorts<S> ports;
+  EdgeFlows<S> edge;  // behind the tubes
+  ActuatorFlows<S> flow;
+  Piston<S> piston;  // what the seals feel; acceleration is left to the force balance
+  S force;           // N: gas and ends of the stroke on the rod, friction not
 };
 
 template <typename S>
-PistonAreas<S> piston_areas(const Params<S>& p) {
-  const S lower = circle_area(p.bore_diameter);
-  const S rod = circle_area(p.rod_diameter);
-  return {lower, lower - rod, rod};
+HeatRatios<S> heat_ratios(const Params<S>& p, ChamberLaw law) {
+  return law == ChamberLaw::energy ? adiabatic_ratios(p) : polytropic_ratios(p);
 }
 
-// Net force of the gas on the piston, N, positive outwards. Written in pressures above ambient, where nothing cancels.
 template <typename S>
-S pressure_force(const Params<S>& p, const Piston<S>& piston) {
-  const PistonAreas<S> area = piston_areas(p);
-  return (piston.pressure_lower - p.ambient_pressure) * area.lower -
-         (piston.pressure_upper - p.ambient_pressure) * area.upper;
+void fill_chambers(const Params<S>& p, const ActuatorLaws& laws, const ActuatorState<S>& state, const S& extension,
+                   const S& velocity, ActuatorTerms<S>& t) {
+  t.lower = lower_space(p, extension, velocity);
+  t.upper = upper_space(p, extension, velocity);
+  t.ports = {
+      {state.supply_pressure, p.air_temperature}, state.lower, state.upper, {p.ambient_pressure, p.air_temperature}};
+  const EdgeFlows<S> edge = valve_flows(p, laws.valve, heat_ratios(p, laws.chamber), state.spool.value, t.ports);
+  t.edge = through_tubes(p, edge, t.ports);
+  t.flow = actuator_flows(p, t.edge, t.ports);
+  t.piston = {extension, velocity, S(0), state.lower.pressure, state.upper.pressure};
+  t.force = pressure_force(p, t.piston) + end_stop_force(p, extension, velocity);
 }
 
-// F_L, N: the force with which the rod pushes on its load, from the motion.
 template <typename S>
-S rod_force(const Params<S>& p, const Piston<S>& piston) {
-  return pressure_force(p, piston) - friction(p, piston) - p.moving_mass * piston.acceleration;
+Gas<S> chamber_rate(const Params<S>& p, ChamberLaw law, const Gas<S>& gas, const ChamberSpace<S>& space,
+                    const ChamberFlow<S>& flow) {
+  if (law == ChamberLaw::energy) {
+    const GasRate<S> rate = energy_rates(p, gas, space, flow);
+    return {rate.pressure, rate.temperature};
+  }
+  return {polytropic_pressure_rate(p, polytropic_ratios(p), gas, space, flow), S(0)};
+}
+
+// Only these depend on the command, V: an integrator whose step ends where the command jumps need renew no more.
+template <typename S>
+void drive_rates(const Params<S>& p, const ActuatorLaws& laws, const ActuatorState<S>& state, const S& command,
+                 ActuatorState<S>& rate) {
+  if (laws.drive_filter) {
+    const S omega = angular_frequency(p.dac_filter_frequency);
+    rate.drive = lag_rate(omega, p.dac_filter_damping_ratio, state.drive, command);
+    rate.spool = spool_rate(p, state.spool, state.drive.value);
+  } else {
+    rate.drive = {S(0), S(0)};
+    rate.spool = spool_rate(p, state.spool, command);
+  }
+}
+
+// All rates but that of the deflection, which comes out of the force balance; after fill_chambers().
+template <typename S>
+void actuator_rates(const Params<S>& p, const ActuatorLaws& laws, const ActuatorState<S>& state, const S& command,
+                    const ActuatorTerms<S>& t, ActuatorState<S>& rate) {
+  rate.lower = chamber_rate(p, laws.chamber, state.lower, t.lower, t.flow.lower);
+  rate.upper = chamber_rate(p, laws.chamber, state.upper, t.upper, t.flow.upper);
+  drive_rates(p, laws, state, command, rate);
+  rate.supply_pressure = reservoir_pressure_rate(p, state.supply_pressure, t.flow.drawn);
+}
+
+// Closed, at rest, the reservoir full, and the two pressures as given, Pa.
+template <typename S>
+ActuatorState<S> actuator_at_rest(const Params<S>& p, const S& pressure_lower, const S& pressure_upper) {
+  const Lag<S> closed = {p.valve_centre, S(0)};
+  return {{pressure_lower, p.air_temperature},
+          {pressure_upper, p.air_temperature},
+          closed,
+          closed,
+          S(0),
+          p.supply_pressure};
+}
+
+// Sizes against which an error of the state is judged: the ranges that it runs through.
+template <typename S>
+ActuatorState<S> actuator_scale() {
+  const Gas<S> gas = {S(4e5), S(300)};
+  const Lag<S> voltage = {S(10), S(4e3)};
+  return {gas, gas, voltage, voltage, S(1e-3), S(4e5)};
+}
+
+// Functions of the state that change sign where the equations have a kink: the ends of the stroke, the reversal, the
+// valve's dead zone and its middle.
+constexpr int actuator_switch_count() { return 6; }
+
+template <typename S>
+void actuator_switches(const Params<S>& p, const ActuatorState<S>& state, const S& extension, const S& velocity,
+                       S* value) {
+  const S first(valve_table_0_4_mpa<ValueOf<S>>().opening[0]);
+  const S opening = valve_opening(p, state.spool.value);
+  value[0] = extension;
+  value[1] = p.stroke - extension;
+  value[2] = velocity;
+  value[3] = opening;
+  value[4] = opening - first;
+  value[5] = opening + first;
 }
 
 }  // namespace sms

@@ -23,7 +23,7 @@
 // volume. Valid for p, T, V > 0; nothing here guards a chamber that has been emptied.
 #pragma once
 
-#include "sms/actuator.hpp"
+#include "sms/piston.hpp"
 #include "sms/tube.hpp"
 #include "sms/valve.hpp"
 

@@ -29,11 +29,16 @@ struct FrictionCurve {
   V exponent;
 };
 
+// Under eq. 6.2 the fall is one of speed alone, and what is left of the rise belongs to the branch.
 template <typename S>
-FrictionCurve<S> friction_curve(const Params<S>& p, const Piston<S>& piston) {
+FrictionCurve<S> friction_curve(const Params<S>& p, FrictionLaw law, const Piston<S>& piston) {
   using std::abs;
   const S direction = piston.velocity < S(0) ? S(-1) : S(1);
-  const FrictionBranches<S> b = friction_branches(p, piston);
+  FrictionBranches<S> b = friction_branches(p, piston);
+  if (law == FrictionLaw::two_branch) {
+    b.starting += b.rise * stribeck_fall(piston.velocity, p.stribeck_velocity, p.stribeck_exponent);
+    b.rise = S(0);
+  }
   return {{direction * b.slowing, direction * b.starting, direction * b.rise},
           direction,
           abs(piston.velocity),
@@ -135,17 +140,17 @@ void solve_in_turn(const FrictionCurve<V> (&curve)[3], bool (&held)[3], const Ma
 
 }  // namespace detail
 
-// Accelerations of the three pistons, m/s^2, under eq. 6.5; their own `acceleration` is not read. SMS_NOT_CONVERGED for
-// a mass that is not positive definite; a stays as it was.
+// Accelerations of the three pistons, m/s^2, each with parameters of its own, under eq. 6.5 or 6.2; their own
+// `acceleration` is not read. SMS_NOT_CONVERGED for a mass that is not positive definite; a stays as it was.
 template <typename S>
-sms_status coupled_accelerations(const Params<S>& p, const Piston<S> (&piston)[3], const Mat3<S>& mass,
-                                 const Vec3<S>& drive, Vec3<S>& acceleration) {
+sms_status coupled_accelerations(const Params<S> (&p)[3], FrictionLaw law, const Piston<S> (&piston)[3],
+                                 const Mat3<S>& mass, const Vec3<S>& drive, Vec3<S>& acceleration) {
   using V = ValueOf<S>;
   detail::FrictionCurve<S> curve[3];
   detail::FrictionCurve<V> plain[3];
   Mat3<V> plain_mass;
   for (int i = 0; i < 3; ++i) {
-    curve[i] = detail::friction_curve(p, piston[i]);
+    curve[i] = detail::friction_curve(p[i], law, piston[i]);
     plain[i] = detail::value_of(curve[i]);
     for (int k = 0; k < 3; ++k) {
       plain_mass(i, k) = value_of(mass(i, k));

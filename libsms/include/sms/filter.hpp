@@ -4,8 +4,8 @@
 //   second   y'' = omega^2 (u - y) - 2 zeta omega y'
 //
 // Twice: as rates, for an integrator that carries y as a state, and as the exact step over dt for an input that is
-// held, as a converter holds its output. The exact step has no error of its own and is stable for any dt, so that a
-// filter far faster than the sampling costs nothing. A Butterworth filter of second order has zeta = 1/sqrt(2); only
+// held, as a converter holds its output, or runs straight. The exact step has no error of its own and is stable for any
+// dt, so that a filter far faster than the sampling costs nothing. A Butterworth filter of second order has zeta = 1/sqrt(2); only
 // then is omega also its -3 dB frequency.
 #pragma once
 
@@ -38,6 +38,12 @@ S low_pass_weight(const S& omega, const S& dt) {
 template <typename S>
 S low_pass_step(const S& weight, const S& value, const S& input) {
   return value + weight * (input - value);
+}
+
+// Input that runs straight from `from` to `to` during dt: the exact step for it, with weight as above.
+template <typename S>
+S low_pass_ramp_step(const S& omega, const S& dt, const S& weight, const S& value, const S& from, const S& to) {
+  return value + weight * (from - value) + (to - from) * (S(1) - weight / (omega * dt));
 }
 
 // ---- second order ----

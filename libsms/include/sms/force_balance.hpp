@@ -32,6 +32,10 @@ enum class FrictionLaw : int {
   lugre                    // with a deflection of the seals, elasto-plastic
 };
 
+inline constexpr bool depends_on_acceleration(FrictionLaw law) {
+  return law == FrictionLaw::acceleration_dependent || law == FrictionLaw::two_branch;
+}
+
 // What a motion costs and does; all laws fill it.
 template <typename S>
 struct ForceBalance {

@@ -21,7 +21,7 @@
 // not to the 15.139 rad/s and 0.85 beside them.
 #pragma once
 
-#include "sms/actuator.hpp"
+#include "sms/piston.hpp"
 
 namespace sms {
 

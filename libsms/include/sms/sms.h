@@ -71,7 +71,7 @@ int sms_param_count(void);
 /* NULL when index is not in 0 .. sms_param_count() - 1. */
 const sms_param_info *sms_param_describe(int index);
 
-/* ---- one cylinder (friction.hpp, actuator.hpp) ------------------------------------------------------------------- */
+/* ---- one cylinder (friction.hpp, piston.hpp) --------------------------------------------------------------------- */
 typedef struct sms_piston {
   double extension;      /* x, m, 0 retracted */
   double velocity;       /* m/s, positive while extending */

@@ -5,7 +5,7 @@
 // (Inside it there is more: an extension is nearly linear in q, so its extremes lie on the boundary.)
 #pragma once
 
-#include "sms/actuator.hpp"
+#include "sms/piston.hpp"
 #include "sms/dynamics.hpp"
 #include "sms/eigen_symmetric.hpp"
 

@@ -1,0 +1,207 @@
+// The platform on its three actuators (dissertation, sections 3.4 and 7.3): the mechanism's equations of motion with the
+// air of three cylinders behind their forces.
+//
+//   M(q) q'' + h(q, q') + g(q) = J(q)^T (F - F_f) + Q                                        dynamics.hpp
+//
+// F is gas and ends of the stroke, F_f the friction of the pistons, Q what else acts on the platform: a wrench from
+// outside and the friction of the Panhard rods' joints. The friction of a piston depends on its own acceleration
+// e'' = J q'' + J' q', so the three are solved together in the coordinates of the pistons,
+//
+//   (J^-T M J^-1) e'' + F_f(e', e'') = F + J^-T (Q - h - g) + (J^-T M J^-1) J' q'            coupled_balance.hpp
+//
+// Each actuator has parameters of its own; the mechanism was made from those of the first.
+#pragma once
+
+#include "sms/actuator.hpp"
+#include "sms/coupled_balance.hpp"
+#include "sms/dynamics.hpp"
+
+namespace sms {
+
+template <typename S>
+struct PlatformState {
+  using Scalar = S;
+  Vec3<S> q;     // roll, pitch, rad; height, m
+  Vec3<S> rate;  // q', rad/s, m/s
+  ActuatorState<S> actuator[3];
+};
+
+template <typename S>
+struct PlatformInput {
+  Vec3<S> command;  // V
+  Wrench<S> wrench;
+};
+
+// The workspace of derivative(): it also remembers the last pose, where the next search for yaw, x and y begins.
+template <typename S>
+struct PlatformTerms {
+  DynamicsTerms<S> dynamics;
+  ActuatorTerms<S> actuator[3];
+  Vec3<S> extension;
+  Vec3<S> friction;      // F_f, N
+  Vec3<S> acceleration;  // q''
+  Pose<ValueOf<S>> start;
+};
+
+template <typename S>
+struct Platform {
+  using Scalar = S;
+  using State = PlatformState<S>;
+  using Input = PlatformInput<S>;
+  using Terms = PlatformTerms<S>;
+  static constexpr int legs = 3;
+  Mechanism<S> mechanism;
+  Params<S> params[3];  // of each actuator
+  ActuatorLaws laws;
+};
+
+template <typename S>
+Platform<S> make_platform(const Params<S>& p, const ActuatorLaws& laws, MassModel masses) {
+  Platform<S> platform;
+  platform.mechanism = make_mechanism(p, masses);
+  platform.params[0] = platform.params[1] = platform.params[2] = p;
+  platform.laws = laws;
+  return platform;
+}
+
+template <typename S>
+void prepare(const Platform<S>& platform, PlatformTerms<S>& t) {
+  t.start = value_of(rest_pose(platform.mechanism.geometry));
+}
+
+// Moments of the Panhard rods' joints, viscous: they take c |omega_rod|^2.
+template <typename S>
+Vec3<S> panhard_load(const Params<S>& p, const Motion<S>& m) {
+  Vec3<S> load = Vec3<S>::Zero();
+  for (int i = 3; i < 6; ++i) {
+    const S per_speed = p.panhard_friction * m.reciprocal_length[i] * m.reciprocal_length[i];
+    load -= per_speed * (m.joint[i].transpose() * m.joint_velocity[i]);
+  }
+  return load;
+}
+
+// q'' and the pistons' friction under eq. 6.5 or 6.2, whose friction and acceleration depend on each other.
+template <typename S>
+sms_status balance_coupled(const Platform<S>& platform, const Vec3<S>& force, const Vec3<S>& other,
+                           PlatformTerms<S>& t) {
+  const Motion<S>& m = t.dynamics.motion;
+  const Mat3<S> to_pistons = inverse(m.extension_slope);
+  const Mat3<S> transposed = to_pistons.transpose();
+  const Mat3<S> mass = transposed * t.dynamics.mass_matrix * to_pistons;
+  const Vec3<S> drive = force + transposed * other + mass * m.extension_bias;
+  const Piston<S> piston[3] = {t.actuator[0].piston, t.actuator[1].piston, t.actuator[2].piston};
+  Vec3<S> along;
+  const sms_status status = coupled_accelerations(platform.params, platform.laws.friction, piston, mass, drive, along);
+  if (status == SMS_OK) {
+    t.friction = drive - mass * along;
+    t.acceleration = to_pistons * (along - m.extension_bias);
+  }
+  return status;
+}
+
+// The same under a law that needs no acceleration.
+template <typename S>
+void balance_direct(const Platform<S>& platform, const PlatformState<S>& state, const Vec3<S>& force,
+                    const Vec3<S>& other, PlatformTerms<S>& t, PlatformState<S>& rate) {
+  for (int i = 0; i < 3; ++i) {
+    const ForceBalance<S> alone = force_balance<S>(platform.params[i], platform.laws.friction, t.actuator[i].piston,
+                                                   state.actuator[i].deflection, S(1), S(0));
+    t.friction(i) = alone.friction;
+    rate.actuator[i].deflection = alone.deflection_rate;
+  }
+  const Vec3<S> load = actuator_load<S>(t.dynamics, force - t.friction) + other;
+  t.acceleration = inverse(t.dynamics.mass_matrix) * load;
+}
+
+template <typename S>
+sms_status derivative(const Platform<S>& platform, const PlatformState<S>& state, const PlatformInput<S>& input,
+                      PlatformTerms<S>& t, PlatformState<S>& rate) {
+  Pose<S> pose;
+  Convergence<ValueOf<S>> convergence;
+  sms_status status = inverse_kinematics(platform.mechanism.geometry, state.q, t.start, pose, t.extension, convergence);
+  if (status != SMS_OK) {
+    return status;
+  }
+  t.start = value_of(pose);
+  evaluate_dynamics(platform.mechanism, pose, state.rate, t.dynamics);
+  Vec3<S> force;
+  for (int i = 0; i < 3; ++i) {
+    fill_chambers<S>(platform.params[i], platform.laws, state.actuator[i], t.extension(i),
+                     t.dynamics.motion.extension_rate(i), t.actuator[i]);
+    force(i) = t.actuator[i].force;
+    actuator_rates<S>(platform.params[i], platform.laws, state.actuator[i], input.command(i), t.actuator[i],
+                      rate.actuator[i]);
+    rate.actuator[i].deflection = S(0);
+  }
+  const Vec3<S> other = platform_load(t.dynamics, input.wrench) + panhard_load(platform.params[0], t.dynamics.motion) -
+                        t.dynamics.inertial - t.dynamics.weight;
+  if (depends_on_acceleration(platform.laws.friction)) {
+    status = balance_coupled(platform, force, other, t);
+  } else {
+    balance_direct(platform, state, force, other, t, rate);
+  }
+  rate.q = state.rate;
+  rate.rate = t.acceleration;
+  return status == SMS_OK && !is_finite(rate.rate) ? SMS_NOT_A_NUMBER : status;
+}
+
+template <typename S>
+void renew_command(const Platform<S>& platform, const PlatformState<S>& state, const PlatformInput<S>& input,
+                   PlatformState<S>& rate) {
+  for (int i = 0; i < 3; ++i) {
+    drive_rates<S>(platform.params[i], platform.laws, state.actuator[i], input.command(i), rate.actuator[i]);
+  }
+}
+
+// At rest in a pose, valves closed: the actuators carry the weight, and the mean of the two pressures of each is as
+// given, Pa.
+template <typename S>
+sms_status platform_at_rest(const Platform<S>& platform, const Vec3<S>& q, const S& mean_pressure,
+                            PlatformState<S>& state) {
+  PlatformTerms<S> t;
+  prepare(platform, t);
+  const sms_status status = dynamics_at(platform.mechanism, q, Vec3<S>(Vec3<S>::Zero()), t.start, t.dynamics);
+  if (status != SMS_OK) {
+    return status;
+  }
+  const Vec3<S> holding = holding_force(t.dynamics, Vec3<S>(Vec3<S>::Zero()));
+  state.q = q;
+  state.rate.setZero();
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = platform.params[i];
+    const PistonAreas<S> area = piston_areas(p);
+    const S force = holding(i) + p.ambient_pressure * area.rod;
+    const S lower = (force + S(2) * mean_pressure * area.upper) / (area.lower + area.upper);
+    state.actuator[i] = actuator_at_rest<S>(p, lower, S(2) * mean_pressure - lower);
+  }
+  return SMS_OK;
+}
+
+template <typename S>
+PlatformState<S> state_scale(const Platform<S>&) {
+  const ActuatorState<S> actuator = actuator_scale<S>();
+  return {Vec3<S>(S(0.2), S(0.2), S(0.4)), Vec3<S>(S(0.5), S(0.5), S(0.5)), {actuator, actuator, actuator}};
+}
+
+// After derivative() at this state: extension and velocity are its terms.
+template <typename S>
+void switches(const Platform<S>& platform, const PlatformState<S>& state, const PlatformTerms<S>& t,
+              S (&value)[3 * actuator_switch_count()]) {
+  for (int i = 0; i < 3; ++i) {
+    actuator_switches<S>(platform.params[i], state.actuator[i], t.extension(i), t.dynamics.motion.extension_rate(i),
+                         value + i * actuator_switch_count());
+  }
+}
+
+// What a plant is asked by whoever closes a loop around it.
+template <typename S>
+const S& extension_of(const PlatformState<S>&, const PlatformTerms<S>& t, int leg) {
+  return t.extension(leg);
+}
+
+template <typename S>
+void set_command(PlatformInput<S>& input, int leg, const S& command) {
+  input.command(leg) = command;
+}
+
+}  // namespace sms

@@ -1,0 +1,248 @@
+"""Simulated runs of one actuator on the bench and of the platform, with or without a controller.
+
+The plants are in libsms/include/sms: actuator.hpp, bench.hpp, platform.hpp; the sampled loop around
+them in simulate.hpp, its integrator in integrate_adaptive.hpp. A run is a table: one row a control
+period, taken when the controller takes its sample.
+
+    run = sms.simulate_bench(5.0 + 0.5 * np.sign(np.sin(t)), controller="open_loop")
+    run["extension"], run["chamber_pressure_lower"]          # (n,) each, SI
+
+Same input, same result, to the bit, on every run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sms import _core
+from sms._core import Params
+from sms.dynamics import mass_model_number
+from sms.kinematics import inverse_kinematics
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+"""Called with the part of the run that is done, 0 to 1, every 0.25 s of simulated time."""
+
+VALVE_LAWS = ("iso_0_4_mpa", "iso_0_2_mpa", "classic")
+FRICTION_LAWS = ("acceleration_dependent", "two_branch", "stribeck", "dahl", "lugre")
+CHAMBER_LAWS = ("polytropic", "energy")
+CONTROLLERS = ("open_loop", "pid", "state_feedback")
+MEAN_PRESSURE = 333e3
+"""Pa absolute, mean of both chambers where a run begins: what SPEC measures near mid-stroke."""
+TOLERANCE = 1e-7
+"""Relative error of one step of the integrator."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A simulated run; `run["extension"]` is a column, (n,)."""
+
+    time: Array  #: s, (n,)
+    columns: tuple[str, ...]  #: names, as in a record
+    rows: Array  #: (n, columns), SI
+    evaluations: int  #: of the plant's derivative
+    steps: int  #: of the integrator
+
+    def __getitem__(self, column: str) -> Array:
+        """One column, (n,); KeyError that names what there is."""
+        if column not in self.columns:
+            raise KeyError(f"{column!r} is not in this run; there is {', '.join(self.columns)}")
+        values: Array = self.rows[:, self.columns.index(column)]
+        return values
+
+    def legs(self, column: str) -> Array:
+        """The columns `column`_1 to _3 of the platform side by side, (n, 3)."""
+        return np.column_stack([self[f"{column}_{leg}"] for leg in (1, 2, 3)])
+
+
+class SimulationStoppedError(_core.StatusError):
+    """A run that could not go on; `run` is what was computed before."""
+
+    def __init__(self, message: str, run: Run) -> None:
+        super().__init__(message)
+        self.run = run
+
+
+def simulate_bench(
+    command: ArrayLike,
+    *,
+    controller: str = "open_loop",
+    compensated: bool = True,
+    electronics: bool = False,
+    extension: float | None = None,
+    load_force: ArrayLike = 0.0,
+    mean_pressure: float = MEAN_PRESSURE,
+    noise: ArrayLike = 0.0,
+    valve_law: str = "iso_0_4_mpa",
+    friction_law: str = "acceleration_dependent",
+    chamber_law: str = "polytropic",
+    params: Params | None = None,
+    controller_params: Params | None = None,
+    tolerance: float = TOLERANCE,
+    step: float = 0.0,
+    progress: Progress | None = None,
+) -> Run:
+    """One actuator on the bench, from rest.
+
+    Args:
+        command: one a control period (params.control_period, 1 ms), (n,): the setpoint of the
+            extension in m, or in an open loop the voltage at the valve in V.
+        controller: "open_loop", "pid" (eq. 7.4) or "state_feedback" (Figure 8.3).
+        compensated: the controller's output steps over the valve's dead band (eq. 7.5).
+        electronics: anti-alias filter, 12-bit converter, pulse width and its filter (section 7.3.3);
+            otherwise the controller sees the extension and the valve its command.
+        extension: where the run begins, m; mid-stroke, or in a closed loop the first setpoint.
+        load_force: on the rod, N, against extension, (n,) or one number.
+        mean_pressure: of both chambers at the beginning, Pa absolute.
+        noise: of the measured extension, m, (n,) or one number; draw it with a seed.
+        valve_law: "iso_0_4_mpa", "iso_0_2_mpa" (the tables' supply) or "classic".
+        friction_law: "acceleration_dependent" (eq. 6.5), "two_branch" (6.2), "stribeck" (6.1),
+            "dahl" or "lugre".
+        chamber_law: "polytropic" (eq. 4.30) or "energy" (temperature a state, heat of the wall).
+        params: of the plant.
+        controller_params: of the controller and its electronics; those of the plant by default.
+        tolerance: relative error of one integrator step; not used with `step`.
+        step: s; if positive, fixed Runge-Kutta steps of at most this size.
+        progress: told how far the run is.
+
+    Raises: SimulationStoppedError, with what was computed; NotANumberError, OutOfRangeError.
+    """
+    plant = params if params is not None else Params()
+    own = controller_params if controller_params is not None else plant
+    setpoint = _columns("command", command, 1)
+    begin = extension
+    if begin is None:
+        closed = controller != "open_loop" and setpoint.size
+        begin = float(setpoint[0, 0]) if closed else 0.5 * float(plant["stroke"])
+    load = np.broadcast_to(_columns("load_force", load_force, 1), setpoint.shape)
+    simulation = _core.BenchSimulation(
+        params=plant, controller=own, valve_law=valve_law, friction_law=friction_law,
+        chamber_law=chamber_law, control=controller, compensated=compensated,
+        electronics=electronics, extension=begin,
+        load_force=float(load[0, 0]) if load.size else 0.0, mean_pressure=mean_pressure,
+        tolerance=tolerance, step=step,
+    )  # fmt: skip
+    return _run(simulation, setpoint, noise, load, float(own["control_period"]), progress)
+
+
+def simulate_platform(
+    command: ArrayLike,
+    *,
+    controller: str = "pid",
+    compensated: bool = True,
+    electronics: bool = False,
+    pose: Sequence[float] = (0.0, 0.0, 0.5),
+    wrench: ArrayLike = 0.0,
+    mean_pressure: float = MEAN_PRESSURE,
+    noise: ArrayLike = 0.0,
+    valve_law: str = "iso_0_4_mpa",
+    friction_law: str = "acceleration_dependent",
+    chamber_law: str = "polytropic",
+    masses: str = "corrected",
+    params: Params | Sequence[Params] | None = None,
+    controller_params: Params | None = None,
+    tolerance: float = TOLERANCE,
+    step: float = 0.0,
+    progress: Progress | None = None,
+) -> Run:
+    """The platform on its three actuators, from rest; see `simulate_bench` for what is the same.
+
+    Args:
+        command: one row a control period, (n, 3): setpoints of the extensions in m (of attitudes:
+            `extensions_of`), or in an open loop the voltages at the valves in V.
+        pose: (roll, pitch, height) where the run begins, rad, rad, m.
+        wrench: on the platform from outside, force in N and moment about the reference point in
+            N m, world axes, (n, 6), (6,) or one number.
+        noise: of the measured extensions, m, (n, 3), (3,) or one number.
+        masses: reading of the mass table, see `sms.dynamics`.
+        params: of the plant, or one for each actuator; the mechanism is made from the first.
+
+    Raises: SimulationStoppedError, with what was computed; NotANumberError, OutOfRangeError,
+        OutOfWorkspaceError for a pose that is none.
+    """
+    plants = _one_each(params)
+    own = controller_params if controller_params is not None else plants[0]
+    setpoint = _columns("command", command, 3)
+    simulation = _core.PlatformSimulation(
+        params=plants, controller=own, valve_law=valve_law, friction_law=friction_law,
+        chamber_law=chamber_law, masses=mass_model_number(masses), control=controller,
+        compensated=compensated, electronics=electronics, q=tuple(float(x) for x in pose),
+        mean_pressure=mean_pressure, tolerance=tolerance, step=step,
+    )  # fmt: skip
+    load = np.broadcast_to(_columns("wrench", wrench, 6), (len(setpoint), 6))
+    return _run(simulation, setpoint, noise, load, float(own["control_period"]), progress)
+
+
+def extensions_of(
+    roll: ArrayLike, pitch: ArrayLike, height: ArrayLike, *, params: Params | None = None
+) -> Array:
+    """Setpoints of the three extensions for an attitude, m, (..., 3): the inverse kinematics."""
+    return inverse_kinematics(roll, pitch, height, params=params).extension
+
+
+def _one_each(params: Params | Sequence[Params] | None) -> list[Params]:
+    if params is None or isinstance(params, Params):
+        return [params if params is not None else Params()] * 3
+    if len(params) != 3:
+        raise ValueError(
+            f"params: one for each of the three actuators is needed, not {len(params)}"
+        )
+    return list(params)
+
+
+def _columns(name: str, values: ArrayLike, width: int) -> Array:
+    """As (n, width); a single number or row stands for every period."""
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim == 0:
+        array = np.full((1, width), float(array))
+    elif array.ndim == 1:
+        array = array[:, None] if width == 1 else array[None, :]
+    if array.ndim != 2 or array.shape[1] != width:
+        wanted = "(n,)" if width == 1 else f"(n, {width})"
+        raise ValueError(f"{name} has shape {np.shape(values)}; {wanted} is needed")
+    return array
+
+
+def _run(
+    simulation: _core.BenchSimulation | _core.PlatformSimulation,
+    setpoint: Array,
+    noise: ArrayLike,
+    load: Array,
+    period: float,
+    progress: Progress | None,
+) -> Run:
+    n, legs = setpoint.shape
+    own_noise = np.broadcast_to(_columns("noise", noise, legs), (n, legs))
+    rows = np.empty((n, len(simulation.columns)))
+    done = status = 0
+    for block in _blocks(n, max(1, round(0.25 / period))):
+        part, status, count = simulation.advance(setpoint[block], own_noise[block], load[block])
+        rows[done : done + count] = part[:count]
+        done += count
+        if status:
+            break
+        if progress is not None:
+            progress(done / n)
+    run = Run(
+        period * np.arange(done, dtype=np.float64),
+        tuple(simulation.columns),
+        rows[:done],
+        simulation.evaluations,
+        simulation.steps,
+    )
+    if status:
+        raise SimulationStoppedError(
+            f"the run stops at {simulation.time:.6g} s of {n * period:.6g} s: "
+            f"{_core.status_string(status)}",
+            run,
+        )
+    return run
+
+
+def _blocks(n: int, size: int) -> Iterator[slice]:
+    for begin in range(0, n, size):
+        yield slice(begin, min(begin + size, n))
