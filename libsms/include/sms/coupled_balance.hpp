@@ -141,7 +141,8 @@ void solve_in_turn(const FrictionCurve<V> (&curve)[3], bool (&held)[3], const Ma
 }  // namespace detail
 
 // Accelerations of the three pistons, m/s^2, each with parameters of its own, under eq. 6.5 or 6.2; their own
-// `acceleration` is not read. SMS_NOT_CONVERGED for a mass that is not positive definite; a stays as it was.
+// `acceleration` is not read, and `acceleration` comes in as a first guess: any, what was found a moment ago saves half
+// of the work. SMS_NOT_CONVERGED for a mass that is not positive definite; it stays as it was then.
 template <typename S>
 sms_status coupled_accelerations(const Params<S> (&p)[3], FrictionLaw law, const Piston<S> (&piston)[3],
                                  const Mat3<S>& mass, const Vec3<S>& drive, Vec3<S>& acceleration) {
@@ -158,7 +159,8 @@ sms_status coupled_accelerations(const Params<S> (&p)[3], FrictionLaw law, const
   }
   bool held[3] = {false, false, false};
   const Vec3<V> force = value_of(drive);
-  Vec3<V> a = Vec3<V>::Zero();
+  const Vec3<V> guess = value_of(acceleration);
+  Vec3<V> a = is_finite(guess) ? guess : Vec3<V>(Vec3<V>::Zero());
   bool found = detail::solve_together<V>(plain, held, plain_mass, force, a);
   for (int round = 0; round < 50 && !found; ++round) {
     detail::solve_in_turn<V>(plain, held, plain_mass, force, a);
@@ -168,7 +170,11 @@ sms_status coupled_accelerations(const Params<S> (&p)[3], FrictionLaw law, const
     return SMS_NOT_CONVERGED;
   }
   const Vec3<S> start(S(a(0)), S(a(1)), S(a(2)));
-  acceleration = start + detail::newton_step(curve, held, mass, drive, start);
+  if (std::is_same<S, V>::value) {
+    acceleration = start;
+  } else {
+    acceleration = start + detail::newton_step(curve, held, mass, drive, start);
+  }
   return SMS_OK;
 }
 

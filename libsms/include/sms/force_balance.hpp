@@ -27,9 +27,9 @@ namespace sms {
 enum class FrictionLaw : int {
   acceleration_dependent,  // eq. 6.5, the source's own
   two_branch,              // eq. 6.2
-  stribeck,                // eq. 6.1 and 4.33
-  dahl,                    // with a deflection of the seals
-  lugre                    // with a deflection of the seals, elasto-plastic
+  stribeck,  // eq. 6.1 and 4.33; its jump at v = 0, where no balance has a solution, by the ramp of eq. 6.7
+  dahl,      // with a deflection of the seals
+  lugre      // with a deflection of the seals, elasto-plastic
 };
 
 inline constexpr bool depends_on_acceleration(FrictionLaw law) {
@@ -162,7 +162,8 @@ ForceBalance<S> force_balance(const Params<S>& p, FrictionLaw law, const Piston<
       return {a, drive - mass * a, S(0)};
     }
     case FrictionLaw::stribeck: {
-      const S force = friction_stribeck(p, piston.velocity);
+      const S dry = stribeck_force(p, piston.velocity);
+      const S force = p.viscous_friction * piston.velocity + friction_ramp(piston.velocity, p.stiction_velocity) * dry;
       return {(drive - force) / mass, force, S(0)};
     }
     case FrictionLaw::dahl:

@@ -32,7 +32,8 @@ struct PlatformInput {
   Wrench<S> wrench;
 };
 
-// The workspace of derivative(): it also remembers the last pose, where the next search for yaw, x and y begins.
+// The workspace of derivative(): it also remembers the last pose and the last accelerations, where the next searches
+// begin.
 template <typename S>
 struct PlatformTerms {
   DynamicsTerms<S> dynamics;
@@ -40,6 +41,7 @@ struct PlatformTerms {
   Vec3<S> extension;
   Vec3<S> friction;      // F_f, N
   Vec3<S> acceleration;  // q''
+  Vec3<S> along;         // e'' of the pistons; the next balance begins there
   Pose<ValueOf<S>> start;
 };
 
@@ -67,6 +69,7 @@ Platform<S> make_platform(const Params<S>& p, const ActuatorLaws& laws, MassMode
 template <typename S>
 void prepare(const Platform<S>& platform, PlatformTerms<S>& t) {
   t.start = value_of(rest_pose(platform.mechanism.geometry));
+  t.along.setZero();
 }
 
 // Moments of the Panhard rods' joints, viscous: they take c |omega_rod|^2.
@@ -90,11 +93,11 @@ sms_status balance_coupled(const Platform<S>& platform, const Vec3<S>& force, co
   const Mat3<S> mass = transposed * t.dynamics.mass_matrix * to_pistons;
   const Vec3<S> drive = force + transposed * other + mass * m.extension_bias;
   const Piston<S> piston[3] = {t.actuator[0].piston, t.actuator[1].piston, t.actuator[2].piston};
-  Vec3<S> along;
-  const sms_status status = coupled_accelerations(platform.params, platform.laws.friction, piston, mass, drive, along);
+  const sms_status status =
+      coupled_accelerations(platform.params, platform.laws.friction, piston, mass, drive, t.along);
   if (status == SMS_OK) {
-    t.friction = drive - mass * along;
-    t.acceleration = to_pistons * (along - m.extension_bias);
+    t.friction = drive - mass * t.along;
+    t.acceleration = to_pistons * (t.along - m.extension_bias);
   }
   return status;
 }

@@ -105,9 +105,9 @@ OpenEdges<S> open_edges(const Params<S>& p, ValveLaw law, const HeatRatios<S>& r
     edges.area = orifice_area(p, spool_cubic(p, S(5) + opening));
   } else {
     const ValveTable<V>& table = law == ValveLaw::iso_0_4_mpa ? valve_table_0_4_mpa<V>() : valve_table_0_2_mpa<V>();
-    const S distance = abs(opening);
-    edges.feed = charge_flow(table, ratios, distance);
-    edges.vent = discharge_flow(table, ratios, distance);
+    const ValveTablePlace<S> place = valve_table_place<S>(table, abs(opening));
+    edges.feed = charge_flow(table, ratios, place);
+    edges.vent = discharge_flow(table, ratios, place);
   }
   return edges;
 }

@@ -155,11 +155,11 @@ S valve_table_value(const ValveTable<ValueOf<S>>& table, int column, const Valve
   return S(curve[0]) + x * (S(curve[1]) + x * (S(curve[2]) + x * S(curve[3])));
 }
 
-// The port that is fed at an opening of |V - centre|, V.
+// The port that is fed.
 template <typename S>
-IsoFlow<S> charge_flow(const ValveTable<ValueOf<S>>& table, const HeatRatios<S>& ratios, const S& opening) {
+IsoFlow<S> charge_flow(const ValveTable<ValueOf<S>>& table, const HeatRatios<S>& ratios,
+                       const ValveTablePlace<S>& place) {
   using Table = ValveTable<ValueOf<S>>;
-  const ValveTablePlace<S> place = valve_table_place<S>(table, opening);
   const S scale = place.below_first * (S(1.4) / ratios.in);
   return {scale * valve_table_value<S>(table, Table::charge_c, place),
           valve_table_value<S>(table, Table::charge_b, place), valve_table_value<S>(table, Table::charge_m, place)};
@@ -167,13 +167,24 @@ IsoFlow<S> charge_flow(const ValveTable<ValueOf<S>>& table, const HeatRatios<S>&
 
 // The port that is vented.
 template <typename S>
-IsoFlow<S> discharge_flow(const ValveTable<ValueOf<S>>& table, const HeatRatios<S>& ratios, const S& opening) {
+IsoFlow<S> discharge_flow(const ValveTable<ValueOf<S>>& table, const HeatRatios<S>& ratios,
+                          const ValveTablePlace<S>& place) {
   using Table = ValveTable<ValueOf<S>>;
-  const ValveTablePlace<S> place = valve_table_place<S>(table, opening);
   const S scale = place.below_first * (S(1.0) / ratios.out);
   return {scale * valve_table_value<S>(table, Table::discharge_c, place),
           valve_table_value<S>(table, Table::discharge_b, place),
           valve_table_value<S>(table, Table::discharge_m, place)};
+}
+
+// The same at an opening of |V - centre|, V.
+template <typename S>
+IsoFlow<S> charge_flow(const ValveTable<ValueOf<S>>& table, const HeatRatios<S>& ratios, const S& opening) {
+  return charge_flow(table, ratios, valve_table_place<S>(table, opening));
+}
+
+template <typename S>
+IsoFlow<S> discharge_flow(const ValveTable<ValueOf<S>>& table, const HeatRatios<S>& ratios, const S& opening) {
+  return discharge_flow(table, ratios, valve_table_place<S>(table, opening));
 }
 
 }  // namespace sms

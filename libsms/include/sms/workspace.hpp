@@ -5,9 +5,9 @@
 // (Inside it there is more: an extension is nearly linear in q, so its extremes lie on the boundary.)
 #pragma once
 
-#include "sms/piston.hpp"
 #include "sms/dynamics.hpp"
 #include "sms/eigen_symmetric.hpp"
+#include "sms/piston.hpp"
 
 namespace sms {
 
