@@ -199,8 +199,10 @@ TEST_CASE("every law through one door") {
       const sms::ForceBalance<double> b = sms::force_balance(p, law, at(v), z, 3.639, drive);
       CHECK(3.639 * b.acceleration + b.friction == doctest::Approx(drive).epsilon(1e-12));
     }
-    CHECK(sms::force_balance(p, FrictionLaw::stribeck, at(v), z, 3.639, drive).friction ==
-          doctest::Approx(sms::friction_stribeck(p, v)));
+    if (std::abs(v) >= p.stiction_velocity) {  // below it the ramp of eq. 6.7 leads through zero
+      CHECK(sms::force_balance(p, FrictionLaw::stribeck, at(v), z, 3.639, drive).friction ==
+            doctest::Approx(sms::friction_stribeck(p, v)));
+    }
   }
 }
 
