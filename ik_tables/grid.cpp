@@ -40,12 +40,11 @@ std::optional<Failure> solve_row(const sms::Geometry<double>& geometry, std::siz
   solved.reserve(table.pitch.size() + 1);
   for (std::size_t k = 0; k < table.pitch.size(); ++k) {
     const sms::Vec3<double> q(table.roll[i], table.pitch[k], table.height[l]);
-    sms::Convergence<double> convergence;
     Pose pose;
     sms::Vec3<double> extension;
-    sms_status status = sms::inverse_kinematics(geometry, q, extrapolated(solved), pose, extension, convergence);
+    sms_status status = sms::inverse_kinematics(geometry, q, extrapolated(solved), pose, extension);
     if (status != SMS_OK) {
-      status = sms::inverse_kinematics(geometry, q, rest, pose, extension, convergence);
+      status = sms::inverse_kinematics(geometry, q, rest, pose, extension);
     }
     if (status != SMS_OK) {
       return Failure{i, q, status};

@@ -72,9 +72,7 @@ class Random {
 Vec solved(const sms::Geometry<double>& geometry, const Vec& q) {
   sms::Pose<double> pose;
   Vec extension;
-  sms::Convergence<double> convergence;
-  const sms_status status =
-      sms::inverse_kinematics(geometry, q, sms::rest_pose(geometry), pose, extension, convergence);
+  const sms_status status = sms::inverse_kinematics(geometry, q, sms::rest_pose(geometry), pose, extension);
   if (status != SMS_OK) {
     throw BadInput("the table spans poses between its nodes that are " + std::string(sms_status_string(status)));
   }
@@ -85,8 +83,7 @@ void compare(const sms::Geometry<double>& geometry, const Vec& q, const Vec& tru
              Interpolation& errors) {
   errors.extension.add((interpolated - truth).cwiseAbs().maxCoeff());
   sms::Pose<double> pose;
-  sms::Convergence<double> convergence;
-  if (sms::forward_kinematics(geometry, interpolated, sms::rest_pose(geometry), pose, convergence) != SMS_OK) {
+  if (sms::forward_kinematics(geometry, interpolated, sms::rest_pose(geometry), pose) != SMS_OK) {
     ++errors.lost;
     return;
   }

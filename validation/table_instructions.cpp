@@ -35,7 +35,7 @@ struct Bench {
   sms::Table<S> table = {};
 
   sms_status solve(const sms::Vec3<S>& q, const sms::Pose<S>& start, sms::Vec3<S>& extension) {
-    return sms::inverse_kinematics(geometry, q, start, pose, extension, convergence);
+    return sms::inverse_kinematics(geometry, q, start, pose, extension, &convergence);
   }
 
   void fill(int heights) {
@@ -68,8 +68,7 @@ struct Bench {
       steps += convergence.iterations;
       sms::Pose<double> truth_pose;
       sms::Vec3<double> truth;
-      sms::Convergence<double> ignored;
-      sms::inverse_kinematics(exact, q, sms::rest_pose(exact), truth_pose, truth, ignored);
+      sms::inverse_kinematics(exact, q, sms::rest_pose(exact), truth_pose, truth);
       error = std::max(error, (extension.template cast<double>() - truth).cwiseAbs().maxCoeff());
     }
     std::printf("%d %g %g\n", kCalls, double(steps) / kCalls, error);

@@ -145,8 +145,7 @@ class Swing {
     const sms::Vec3<double> q = state.head<3>(), rate = state.tail<3>();
     sms::Pose<double> pose;
     sms::Vec3<double> extension;
-    sms::Convergence<double> convergence;
-    require(sms::inverse_kinematics(mechanism_.geometry, q, terms_.pose, pose, extension, convergence));
+    require(sms::inverse_kinematics(mechanism_.geometry, q, terms_.pose, pose, extension));
     sms::evaluate_dynamics(mechanism_, pose, rate, terms_);
     const sms::Vec3<double> stretch = extension.array() - middle;
     const sms::Vec3<double> force = sms::Vec3<double>::Constant(weight_share) - stiffness * stretch;

@@ -26,23 +26,20 @@ inline Vec coordinates(const sms::Pose<double>& pose) { return {pose.roll, pose.
 inline sms::Pose<double> pose_at(const sms::Geometry<double>& g, const Vec& q) {
   sms::Pose<double> pose = sms::rest_pose(g);
   Vec extension;
-  sms::Convergence<double> convergence;
-  REQUIRE(sms::inverse_kinematics(g, q, sms::rest_pose(g), pose, extension, convergence) == sms_status::SMS_OK);
+  REQUIRE(sms::inverse_kinematics(g, q, sms::rest_pose(g), pose, extension) == sms_status::SMS_OK);
   return pose;
 }
 
 inline Vec extension_at(const sms::Geometry<double>& g, const Vec& q) {
   sms::Pose<double> pose;
   Vec extension;
-  sms::Convergence<double> convergence;
-  REQUIRE(sms::inverse_kinematics(g, q, sms::rest_pose(g), pose, extension, convergence) == sms_status::SMS_OK);
+  REQUIRE(sms::inverse_kinematics(g, q, sms::rest_pose(g), pose, extension) == sms_status::SMS_OK);
   return extension;
 }
 
 inline sms::Pose<double> pose_of_extension(const sms::Geometry<double>& g, const Vec& extension) {
   sms::Pose<double> pose;
-  sms::Convergence<double> convergence;
-  REQUIRE(sms::forward_kinematics(g, extension, sms::rest_pose(g), pose, convergence) == sms_status::SMS_OK);
+  REQUIRE(sms::forward_kinematics(g, extension, sms::rest_pose(g), pose) == sms_status::SMS_OK);
   return pose;
 }
 

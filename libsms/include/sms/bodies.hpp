@@ -37,7 +37,7 @@ template <typename S>
 struct Bodies {
   Body<S> platform;    // platform axes; cog from the reference point, inertia about the cog
   Body<S> hung[6];     // cylinder or rod, link axes; cog from B_i, inertia about B_i
-  Body<S> sliding[3];  // piston, link axes; cog from P_i, inertia about the cog
+  Body<S> sliding[3];  // piston, link axes; cog from P_i, inertia about P_i
   bool links_move;     // false: the platform is all there is
 };
 
@@ -146,7 +146,7 @@ void corrected_links(const Params<S>& p, const Geometry<S>& g, Bodies<S>& bodies
     turn << cosine, -sine, S(0), sine, cosine, S(0), S(0), S(0), S(1);
     const Mat3<S> axes = turn.transpose() * rest_link(g, i).axes;
     bodies.hung[i] = about_joint(in_link_axes(axes, p.cylinder_mass, cylinder, cylinder_inertia));
-    bodies.sliding[i] = in_link_axes(axes, p.piston_mass, piston, piston_inertia);
+    bodies.sliding[i] = about_joint(in_link_axes(axes, p.piston_mass, piston, piston_inertia));
   }
   for (int i = 0; i < 3; ++i) {
     const Body<S> rod = {p.panhard_mass, Vec3<S>(S(0), S(0), S(0.5) * g.panhard_length(i)),
@@ -169,7 +169,7 @@ void table_links(const Params<S>& p, const Geometry<S>& g, Bodies<S>& bodies) {
   for (int i = 0; i < 3; ++i) {
     const RestLink<S> actuator = rest_link(g, i), rod = rest_link(g, 3 + i);
     bodies.hung[i] = about_joint(printed(actuator, p.cylinder_mass, printed_cylinder<S>(i), actuator.base));
-    bodies.sliding[i] = printed(actuator, p.piston_mass, printed_piston<S>(i), actuator.joint);
+    bodies.sliding[i] = about_joint(printed(actuator, p.piston_mass, printed_piston<S>(i), actuator.joint));
     bodies.hung[3 + i] = about_joint(printed(rod, p.panhard_mass, printed_panhard<S>(i), rod.base));
   }
 }

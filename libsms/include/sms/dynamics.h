@@ -45,7 +45,7 @@ typedef struct sms_mechanism {
   sms_geometry geometry;
   sms_body platform;   /* platform axes, cog from the reference point, inertia about the cog */
   sms_body hung[6];    /* cylinder or rod, link axes, cog from B_i, inertia about B_i */
-  sms_body sliding[3]; /* piston, link axes, cog from P_i, inertia about the cog */
+  sms_body sliding[3]; /* piston, link axes, cog from P_i, inertia about P_i */
   bool links_move;     /* false: the platform is all there is */
   double gravity;      /* m/s^2 */
 } sms_mechanism;

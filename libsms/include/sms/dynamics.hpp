@@ -12,6 +12,7 @@
 #include "sms/inverse_kinematics.hpp"
 #include "sms/link_dynamics.hpp"
 #include "sms/motion.hpp"
+#include "sms/pair.hpp"
 
 namespace sms {
 
@@ -64,36 +65,68 @@ void add_platform(const Body<S>& body, const S& gravity, DynamicsTerms<S>& t) {
   t.potential_energy -= body.mass * gravity * (arm(2) - t.pose.height);
 }
 
-// Link i as link_dynamics.hpp sees it.
+// Actuator i and Panhard rod i side by side, as link_dynamics.hpp sees them. A rod is a link that nothing slides in.
 template <typename S>
 struct LinkView {
-  Mat3<S> to_link;  // world axes to link axes
+  Mat3<S> axes;  // columns in world axes
   LinkState<S> state;
   BaseLoad<S> base;
+  S potential_energy;  // J, zero at ground
 };
 
 template <typename S>
-LinkView<S> link_view(const Mechanism<S>& mechanism, int i, const Motion<S>& m) {
-  const LinkAxes<S> frame = link_axes(m.direction[i], mechanism.geometry.joint_axis[i]);
-  const Mat3<S> to_link = frame.axes.transpose();
-  const LinkState<S> state = {m.reciprocal_length[i], frame.axis_slope, to_link * m.joint_velocity[i],
-                              to_link * m.joint_bias[i], mechanism.gravity * to_link.col(2)};
-  const Bodies<S>& bodies = mechanism.bodies;
-  return {to_link, state,
-          i < 3 ? base_load(bodies.hung[i], bodies.sliding[i], m.length[i]) : base_load(bodies.hung[i])};
+inline Body<Pair<S>> pair_of(const Body<S>& a, const Body<S>& b) {
+  return {Pair<S>(a.mass, b.mass), pair_of(a.cog, b.cog), pair_of(a.inertia, b.inertia)};
 }
 
 template <typename S>
-void add_link(const Mechanism<S>& mechanism, int i, DynamicsTerms<S>& t) {
-  const LinkView<S> link = link_view(mechanism, i, t.motion);
-  const LinkLoad<S> load = link_load(link.base, link.state);
-  const Mat3<S> joint = link.to_link * t.motion.joint[i];  // velocity of P per q', link axes
-  t.mass_matrix += joint.transpose() * (load.apparent_mass * joint);
-  t.inertial += joint.transpose() * load.inertial;
-  t.weight += joint.transpose() * load.weight;
-  const S mass = mechanism.bodies.hung[i].mass + link.base.sliding_mass;
-  t.potential_energy -=
-      mass * mechanism.gravity * mechanism.geometry.base[i](2) + link.state.gravity.dot(link.base.first_moment);
+inline LinkView<Pair<S>> link_view(const Mechanism<S>& mechanism, int i, const Motion<S>& m) {
+  using Two = Pair<S>;
+  const int rod = i + 3;
+  const Bodies<S>& bodies = mechanism.bodies;
+  const Body<S> none = {S(0), Vec3<S>::Zero(), Mat3<S>::Zero()};
+  const LinkAxes<Two> frame = link_axes(pair_of(m.direction[i], m.direction[rod]),
+                                        pair_of(mechanism.geometry.joint_axis[i], mechanism.geometry.joint_axis[rod]));
+  const Eigen::Matrix<Two, 2, 3> across = frame.axes.template leftCols<2>().transpose();
+  LinkView<Two> view;
+  view.axes = frame.axes;
+  view.state.reciprocal_length = Two(m.reciprocal_length[i], m.reciprocal_length[rod]);
+  view.state.axis_slope = frame.axis_slope;
+  view.state.velocity = across * pair_of(m.joint_velocity[i], m.joint_velocity[rod]);
+  view.state.acceleration = across * pair_of(m.joint_bias[i], m.joint_bias[rod]);
+  view.state.slide_rate = Two(m.extension_rate(i), S(0));
+  view.state.slide_acceleration = Two(m.extension_bias(i), S(0));
+  view.state.gravity = Two(mechanism.gravity) * frame.axes.row(2).transpose();
+  view.base = base_load(pair_of(bodies.hung[i], bodies.hung[rod]), pair_of(bodies.sliding[i], none),
+                        Two(m.length[i], m.length[rod]));
+  const Two base_height(-mechanism.geometry.base[i](2), -mechanism.geometry.base[rod](2));
+  view.potential_energy =
+      Two(mechanism.gravity) * view.base.mass * base_height - view.state.gravity.dot(view.base.first_moment);
+  return view;
+}
+
+// Link by link, in its axes: what it brings to P, seen through the velocity of P per q'.
+template <typename S>
+void add_links(const Mechanism<S>& mechanism, DynamicsTerms<S>& t) {
+  using Two = Pair<S>;
+  const Motion<S>& m = t.motion;
+  const Attitude<Two> attitude = {pair_of(m.attitude.rotation), pair_of(m.attitude.roll_axis),
+                                  pair_of(m.attitude.pitch_axis)};
+  const Mat3<Two> parasitic = pair_of(m.eliminated.parasitic);
+  for (int i = 0; i < 3; ++i) {
+    const LinkView<Two> link = link_view(mechanism, i, m);
+    const LinkLoad<Two> load = link_load(link.base, link.state, link_motion(link.state));
+    const Vec3<Two> arm = pair_of(m.links.arm[i], m.links.arm[i + 3]);
+    Mat3<Two> velocity;
+    velocity.row(0) = constrained(point_slope(attitude, arm, Vec3<Two>(link.axes.col(0))), parasitic);
+    velocity.row(1) = constrained(point_slope(attitude, arm, Vec3<Two>(link.axes.col(1))), parasitic);
+    velocity.row(2) = pair_of(Vec3<S>(m.extension_slope.row(i)), Vec3<S>(Vec3<S>::Zero()));
+    const Mat3<Two> momentum = load.apparent_mass * velocity;
+    t.mass_matrix += sum(Mat3<Two>(velocity.transpose() * momentum));
+    t.inertial += sum(Vec3<Two>(velocity.transpose() * load.inertial));
+    t.weight += sum(Vec3<Two>(velocity.transpose() * load.weight));
+    t.potential_energy += link.potential_energy.sum();
+  }
 }
 
 // M, h, g and U in a pose that fits the rods, at the rate q'.
@@ -107,8 +140,8 @@ void evaluate_dynamics(const Mechanism<S>& mechanism, const Pose<S>& pose, const
   t.weight.setZero();
   t.potential_energy = S(0);
   add_platform(mechanism.bodies.platform, mechanism.gravity, t);
-  for (int i = 0; mechanism.bodies.links_move && i < 6; ++i) {
-    add_link(mechanism, i, t);
+  if (mechanism.bodies.links_move) {
+    add_links(mechanism, t);
   }
 }
 
@@ -170,8 +203,7 @@ sms_status dynamics_at(const Mechanism<S>& mechanism, const Vec3<S>& q, const Ve
   }
   Pose<S> pose;
   Vec3<S> extension;
-  Convergence<ValueOf<S>> convergence;
-  const sms_status status = inverse_kinematics(mechanism.geometry, q, start, pose, extension, convergence);
+  const sms_status status = inverse_kinematics(mechanism.geometry, q, start, pose, extension);
   if (status == SMS_OK) {
     evaluate_dynamics(mechanism, pose, rate, terms);
   }

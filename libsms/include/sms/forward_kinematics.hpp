@@ -18,6 +18,7 @@
 
 #include "sms/links.hpp"
 #include "sms/newton.hpp"
+#include "sms/pair.hpp"
 #include "sms/sms.h"
 
 namespace sms {
@@ -31,6 +32,11 @@ struct PoseAngles {
 };
 
 template <typename S>
+inline SineCosine<Pair<S>> pair_of(const SineCosine<S>& both) {
+  return {Pair<S>(both.sine), Pair<S>(both.cosine)};
+}
+
+template <typename S>
 inline PoseAngles<S> angles_of(const Pose<S>& pose) {
   return {sine_cosine(pose.roll), sine_cosine(pose.pitch), sine_cosine(pose.yaw)};
 }
@@ -42,12 +48,16 @@ struct YawedLink {
   Vec3<S> link;
 };
 
+// Actuator i and rod i.
 template <typename S>
-inline YawedLink<S> yawed_link(const Geometry<S>& g, int i, const Pose<S>& pose, const PoseAngles<S>& angles) {
-  const Vec3<S> arm = tilted(angles.roll, angles.pitch, g.platform[i]);
-  const S x = pose.x - g.base[i](0), y = pose.y - g.base[i](1);
-  return {arm, Vec3<S>(arm(0) + angles.yaw.cosine * x + angles.yaw.sine * y,
-                       arm(1) + angles.yaw.cosine * y - angles.yaw.sine * x, arm(2) - pose.height - g.base[i](2))};
+inline YawedLink<Pair<S>> yawed_links(const Geometry<S>& g, int i, const Pose<S>& pose, const PoseAngles<S>& angles) {
+  using Two = Pair<S>;
+  const Vec3<Two> base = pair_of(g.base[i], g.base[i + 3]);
+  const Two x = Two(pose.x) - base(0), y = Two(pose.y) - base(1), cosine(angles.yaw.cosine), sine(angles.yaw.sine);
+  YawedLink<Two> l;
+  l.arm = tilted(pair_of(angles.roll), pair_of(angles.pitch), pair_of(g.platform[i], g.platform[i + 3]));
+  l.link << l.arm(0) + cosine * x + sine * y, l.arm(1) + cosine * y - sine * x, l.arm(2) - Two(pose.height) - base(2);
+  return l;
 }
 
 // Half the excess of each link's squared length, m^2.
@@ -58,8 +68,10 @@ struct LinkExcess {
 };
 
 template <typename S>
-inline S half_excess(const Vec3<S>& link, const S& length) {
-  return S(0.5) * (link.squaredNorm() - length * length);
+inline void set_excess(LinkExcess<S>& excess, int i, const Vec3<Pair<S>>& link, const Pair<S>& length) {
+  const Pair<S> half = Pair<S>(S(0.5)) * (link.squaredNorm() - length * length);
+  excess.actuator(i) = half.actuator();
+  excess.panhard(i) = half.rod();
 }
 
 template <typename S>
@@ -67,8 +79,7 @@ LinkExcess<S> link_excess(const Geometry<S>& g, const Vec3<S>& actuator_length, 
   const PoseAngles<S> angles = angles_of(pose);
   LinkExcess<S> excess;
   for (int i = 0; i < 3; ++i) {
-    excess.actuator(i) = half_excess(yawed_link(g, i, pose, angles).link, actuator_length(i));
-    excess.panhard(i) = half_excess(yawed_link(g, i + 3, pose, angles).link, g.panhard_length(i));
+    set_excess(excess, i, yawed_links(g, i, pose, angles).link, Pair<S>(actuator_length(i), g.panhard_length(i)));
   }
   return excess;
 }
@@ -83,8 +94,8 @@ V length_error(const LinkExcess<V>& excess, const Vec3<V>& actuator_length, cons
 // The linearised problem, ready to be solved for any excess.
 template <typename V>
 struct PoseSolver {
+  LinkSlopes<V> slopes;
   Elimination<V> eliminated;
-  Mat3<V> actuator_parasitic;
   Mat3<V> actuator_inverse;
   SineCosine<V> yaw;  // turns a move in the yawed axes into one of x and y
 };
@@ -98,7 +109,7 @@ struct PoseStep {
 template <typename S, typename V>
 PoseStep<S> newton_step(const PoseSolver<V>& solver, const LinkExcess<S>& excess) {
   const Vec3<S> held = solver.eliminated.panhard_inverse.template cast<S>() * excess.panhard;
-  const Vec3<S> left = solver.actuator_parasitic.template cast<S>() * held - excess.actuator;
+  const Vec3<S> left = solver.slopes.actuator_parasitic.template cast<S>() * held - excess.actuator;
   PoseStep<S> step;
   step.driven = solver.actuator_inverse.template cast<S>() * left;
   const Vec3<S> yawed = solver.eliminated.parasitic.template cast<S>() * step.driven - held;
@@ -132,32 +143,30 @@ struct PoseSolution {
 };
 
 template <typename V>
-inline void set_slope(Mat3<V>& driven, Mat3<V>& parasitic, int row, const YawedLink<V>& l, const SineCosine<V>& pitch) {
-  const Vec3<V> moment = cross(l.arm, l.link);
-  driven(row, 0) = moment(0) * pitch.cosine - moment(2) * pitch.sine;
-  driven(row, 1) = moment(1);
-  driven(row, 2) = -l.link(2);
-  parasitic(row, 0) = moment(2);
-  parasitic(row, 1) = l.link(0);
-  parasitic(row, 2) = l.link(1);
+inline void set_slopes(LinkSlopes<V>& slopes, int i, const YawedLink<Pair<V>>& l, const SineCosine<V>& pitch) {
+  const Vec3<Pair<V>> moment = cross(l.arm, l.link);
+  const Pair<V> pitch_cosine(pitch.cosine), pitch_sine(pitch.sine);
+  const Vec3<Pair<V>> driven(moment(0) * pitch_cosine - moment(2) * pitch_sine, moment(1), -l.link(2));
+  const Vec3<Pair<V>> parasitic(moment(2), l.link(0), l.link(1));
+  for (int k = 0; k < 3; ++k) {
+    slopes.actuator_driven(i, k) = driven(k).actuator();
+    slopes.actuator_parasitic(i, k) = parasitic(k).actuator();
+    slopes.panhard_driven(i, k) = driven(k).rod();
+    slopes.panhard_parasitic(i, k) = parasitic(k).rod();
+  }
 }
 
 // Excess and slopes in one go.
 template <typename V>
 LinkExcess<V> evaluate_pose(const Geometry<V>& g, const Vec3<V>& length, const Pose<V>& pose, PoseSolver<V>& solver) {
   const PoseAngles<V> angles = angles_of(pose);
-  LinkSlopes<V> slopes;
   LinkExcess<V> excess;
   for (int i = 0; i < 3; ++i) {
-    const YawedLink<V> actuator = yawed_link(g, i, pose, angles);
-    set_slope(slopes.actuator_driven, slopes.actuator_parasitic, i, actuator, angles.pitch);
-    excess.actuator(i) = half_excess(actuator.link, length(i));
-    const YawedLink<V> panhard = yawed_link(g, i + 3, pose, angles);
-    set_slope(slopes.panhard_driven, slopes.panhard_parasitic, i, panhard, angles.pitch);
-    excess.panhard(i) = half_excess(panhard.link, g.panhard_length(i));
+    const YawedLink<Pair<V>> links = yawed_links(g, i, pose, angles);
+    set_slopes(solver.slopes, i, links, angles.pitch);
+    set_excess(excess, i, links.link, Pair<V>(length(i), g.panhard_length(i)));
   }
-  solver.eliminated = eliminate_parasitic(slopes);
-  solver.actuator_parasitic = slopes.actuator_parasitic;
+  eliminate_parasitic(solver.slopes, solver.eliminated);
   solver.actuator_inverse = inverse(solver.eliminated.actuator);
   solver.yaw = angles.yaw;
   return excess;
@@ -208,9 +217,11 @@ Pose<S> last_step_of_pose(const Geometry<S>& g, const Geometry<V>& geometry, con
 // was.
 template <typename S>
 sms_status forward_kinematics(const Geometry<S>& g, const Vec3<S>& extension, const Pose<ValueOf<S>>& start,
-                              Pose<S>& pose, Convergence<ValueOf<S>>& convergence) {
+                              Pose<S>& pose, Convergence<ValueOf<S>>* convergence = nullptr) {
   using V = ValueOf<S>;
-  convergence = {0, std::numeric_limits<V>::quiet_NaN()};
+  if (convergence != nullptr) {
+    *convergence = not_begun<V>();
+  }
   if (!is_finite(extension) || !is_finite(start)) {
     return SMS_NOT_A_NUMBER;
   }
@@ -221,11 +232,14 @@ sms_status forward_kinematics(const Geometry<S>& g, const Vec3<S>& extension, co
   const Geometry<V>& geometry = value_of(g);
   PoseSolution<V> solution;
   solution.pose = start;
-  const sms_status status = solve_pose(geometry, value_of(length), solution, convergence.iterations);
+  int iterations = 0;
+  const sms_status status = solve_pose(geometry, value_of(length), solution, iterations);
   const Pose<S> found = last_step_of_pose(g, geometry, length, solution);
-  const Pose<V>& last = status == SMS_OK ? value_of(found) : solution.pose;
-  const LinkExcess<V> left = link_excess(geometry, value_of(length), last);
-  convergence.residual = length_error(left, value_of(length), geometry.panhard_length);
+  if (convergence != nullptr) {
+    const Pose<V> last = status == SMS_OK ? value_of(found) : solution.pose;
+    const LinkExcess<V> left = link_excess(geometry, value_of(length), last);
+    *convergence = {iterations, length_error(left, value_of(length), geometry.panhard_length)};
+  }
   if (status != SMS_OK) {
     return status;
   }

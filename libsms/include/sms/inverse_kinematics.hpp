@@ -129,11 +129,13 @@ V length_error(const Vec3<V>& excess, const Vec3<V>& panhard_length) {
 // extension are as they were.
 template <typename S>
 sms_status inverse_kinematics(const Geometry<S>& g, const Vec3<S>& q, const Pose<ValueOf<S>>& start, Pose<S>& pose,
-                              Vec3<S>& extension, Convergence<ValueOf<S>>& convergence) {
+                              Vec3<S>& extension, Convergence<ValueOf<S>>* convergence = nullptr) {
   using V = ValueOf<S>;
   using std::abs;
   using std::sqrt;
-  convergence = {0, std::numeric_limits<V>::quiet_NaN()};
+  if (convergence != nullptr) {
+    *convergence = not_begun<V>();
+  }
   if (!is_finite(q) || !is_finite(start)) {
     return SMS_NOT_A_NUMBER;
   }
@@ -150,12 +152,14 @@ sms_status inverse_kinematics(const Geometry<S>& g, const Vec3<S>& q, const Pose
   }
   PlanSolution<V> solution;
   solution.x_y_yaw << start.x, start.y, start.yaw;
-  const sms_status status = solve_plan(rods_value, solution, convergence.iterations);
-  const bool found = status == SMS_OK;
+  int iterations = 0;
+  const sms_status status = solve_plan(rods_value, solution, iterations);
   const Vec3<S> x_y_yaw = last_step_of_plan(rods, rods_value, solution);
-  const Vec3<V> left = plan_error(rods_value, found ? value_of(x_y_yaw) : solution.x_y_yaw).excess;
-  convergence.residual = length_error(left, value_of(g.panhard_length));
-  if (!found) {
+  if (convergence != nullptr) {
+    const Vec3<V> left = plan_error(rods_value, status == SMS_OK ? value_of(x_y_yaw) : solution.x_y_yaw).excess;
+    *convergence = {iterations, length_error(left, value_of(g.panhard_length))};
+  }
+  if (status != SMS_OK) {
     return status;
   }
 

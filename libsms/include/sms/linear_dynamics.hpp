@@ -24,15 +24,16 @@ S weight_power_rate(const Mechanism<S>& mechanism, const Motion<S>& m) {
   const Vec3<S> circling = cross(m.angular_velocity, arm);
   const Vec3<S> acceleration = m.linear_bias + cross(m.angular_bias, arm) + cross(m.angular_velocity, circling);
   S power_rate = -platform.mass * mechanism.gravity * acceleration(2);
-  for (int i = 0; mechanism.bodies.links_move && i < 6; ++i) {
-    const LinkView<S> link = link_view(mechanism, i, m);
-    const LinkMotion<S> motion = link_motion(link.state);
-    const Vec3<S>& moment = link.base.first_moment;
-    const Vec3<S> sliding(S(0), S(0), link.base.sliding_mass * motion.slide_rate);
-    const Vec3<S> turning = cross(motion.omega, moment) + S(2) * sliding;
-    Vec3<S> second = cross(motion.alpha, moment) + cross(motion.omega, turning);
-    second(2) += link.base.sliding_mass * motion.slide_acceleration;
-    power_rate -= link.state.gravity.dot(second);
+  for (int i = 0; mechanism.bodies.links_move && i < 3; ++i) {
+    using Two = Pair<S>;
+    const LinkView<Two> link = link_view(mechanism, i, m);
+    const LinkMotion<Two> motion = link_motion(link.state);
+    const Vec3<Two>& moment = link.base.first_moment;
+    const Vec3<Two> sliding(Two(0), Two(0), link.base.sliding_mass * link.state.slide_rate);
+    const Vec3<Two> turning = cross(motion.omega, moment) + Two(2) * sliding;
+    Vec3<Two> second = cross(motion.alpha, moment) + cross(motion.omega, turning);
+    second(2) += link.base.sliding_mass * link.state.slide_acceleration;
+    power_rate -= link.state.gravity.dot(second).sum();
   }
   return power_rate;
 }

@@ -40,6 +40,20 @@ void six_leg_inverse(const Geometry<S>& g, const Pose<S>& pose, S length[6]) {
   }
 }
 
+// How fast a point of the platform moves along a direction, per rate of the driven and of the parasitic coordinates.
+// By the principle of virtual power also what a force on that point does to them.
+template <typename S>
+struct PointSlope {
+  Vec3<S> driven;
+  Vec3<S> parasitic;
+};
+
+template <typename S>
+inline PointSlope<S> point_slope(const Attitude<S>& a, const Vec3<S>& arm, const Vec3<S>& direction) {
+  const Vec3<S> moment = cross(arm, direction);
+  return {{moment.dot(a.roll_axis), moment.dot(a.pitch_axis), -direction(2)}, {moment(2), direction(0), direction(1)}};
+}
+
 // Derivatives of |l_i|^2 / 2, row i, by the driven and by the parasitic coordinates; m^2 per rad or m.
 template <typename S>
 struct LinkSlopes {
@@ -53,13 +67,9 @@ template <typename S>
 LinkSlopes<S> link_slopes(const Links<S>& links, const Attitude<S>& a) {
   LinkSlopes<S> slopes;
   for (int i = 0; i < 6; ++i) {
-    const Vec3<S>& l = links.link[i];
-    const Vec3<S> moment = cross(links.arm[i], l);
-    const int row = i % 3;
-    Mat3<S>& driven = i < 3 ? slopes.actuator_driven : slopes.panhard_driven;
-    Mat3<S>& parasitic = i < 3 ? slopes.actuator_parasitic : slopes.panhard_parasitic;
-    driven.row(row) << moment.dot(a.roll_axis), moment.dot(a.pitch_axis), -l(2);
-    parasitic.row(row) << moment(2), l(0), l(1);
+    const PointSlope<S> slope = point_slope(a, links.arm[i], links.link[i]);
+    (i < 3 ? slopes.actuator_driven : slopes.panhard_driven).row(i % 3) = slope.driven;
+    (i < 3 ? slopes.actuator_parasitic : slopes.panhard_parasitic).row(i % 3) = slope.parasitic;
   }
   return slopes;
 }
@@ -73,12 +83,16 @@ struct Elimination {
 };
 
 template <typename S>
-Elimination<S> eliminate_parasitic(const LinkSlopes<S>& slopes) {
-  Elimination<S> e;
+void eliminate_parasitic(const LinkSlopes<S>& slopes, Elimination<S>& e) {
   e.panhard_inverse = inverse(slopes.panhard_parasitic);
   e.parasitic = -e.panhard_inverse * slopes.panhard_driven;
   e.actuator = slopes.actuator_driven + slopes.actuator_parasitic * e.parasitic;
-  return e;
+}
+
+// The same per rate of the driven ones alone, when the parasitic ones follow.
+template <typename S>
+inline Vec3<S> constrained(const PointSlope<S>& slope, const Mat3<S>& parasitic) {
+  return slope.driven + parasitic.transpose() * slope.parasitic;
 }
 
 }  // namespace sms

@@ -29,7 +29,6 @@ struct Motion {
   Elimination<S> eliminated;
   Mat3<S> angular;          // W, world axes: column k is omega per q'_k
   Mat3<S> linear;           // V, world axes
-  Mat3<S> joint[6];         // column k is the velocity of P_i per q'_k
   Mat3<S> extension_slope;  // J = d extension / dq
 
   // of the velocity: move()
@@ -50,7 +49,7 @@ void place(const Geometry<S>& g, const Pose<S>& pose, Motion<S>& m) {
   using std::sqrt;
   m.attitude = attitude(pose.roll, pose.pitch, pose.yaw);
   locate_links(g, m.attitude.rotation, pose, m.links);
-  m.eliminated = eliminate_parasitic(link_slopes(m.links, m.attitude));
+  eliminate_parasitic(link_slopes(m.links, m.attitude), m.eliminated);
   const Mat3<S>& parasitic = m.eliminated.parasitic;
   m.angular.row(0) << m.attitude.roll_axis(0), m.attitude.pitch_axis(0), S(0);
   m.angular.row(1) << m.attitude.roll_axis(1), m.attitude.pitch_axis(1), S(0);
@@ -63,14 +62,16 @@ void place(const Geometry<S>& g, const Pose<S>& pose, Motion<S>& m) {
     m.length[i] = sqrt(m.links.link[i].squaredNorm());
     m.reciprocal_length[i] = S(1) / m.length[i];
     m.direction[i] = m.reciprocal_length[i] * m.links.link[i];
-    for (int k = 0; k < 3; ++k) {
-      const Vec3<S> turning = m.angular.col(k);
-      m.joint[i].col(k) = m.linear.col(k) + cross(turning, m.links.arm[i]);
-    }
   }
   for (int i = 0; i < 3; ++i) {
     m.extension_slope.row(i) = m.reciprocal_length[i] * m.eliminated.actuator.row(i);
   }
+}
+
+// Generalised force of a force on the joint P_i, world axes; after place().
+template <typename S>
+Vec3<S> joint_load(const Motion<S>& m, int i, const Vec3<S>& force) {
+  return constrained(point_slope(m.attitude, m.links.arm[i], force), m.eliminated.parasitic);
 }
 
 // Velocities and biases for q'; after place().
@@ -78,6 +79,7 @@ template <typename S>
 void move(const Vec3<S>& rate, Motion<S>& m) {
   m.angular_velocity = m.angular * rate;
   m.parasitic_rate = m.eliminated.parasitic * rate;
+  const Vec3<S> velocity(m.parasitic_rate(1), m.parasitic_rate(2), -rate(2));
   m.extension_rate = m.extension_slope * rate;
   // The axes of roll and pitch are themselves carried along: by yaw, and that of roll by pitch too.
   const Vec3<S> e_z(S(0), S(0), S(1));
@@ -90,8 +92,8 @@ void move(const Vec3<S>& rate, Motion<S>& m) {
   Vec3<S> missing;
   for (int i = 0; i < 6; ++i) {
     const Vec3<S>& arm = m.links.arm[i];
-    m.joint_velocity[i] = m.joint[i] * rate;
     const Vec3<S> circling = cross(m.angular_velocity, arm);
+    m.joint_velocity[i] = velocity + circling;
     swing[i] = cross(turning, arm) + cross(m.angular_velocity, circling);
     if (i >= 3) {
       missing(i - 3) = m.links.link[i].dot(swing[i]) + m.joint_velocity[i].squaredNorm();

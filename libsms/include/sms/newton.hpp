@@ -12,12 +12,17 @@
 
 namespace sms {
 
-// How an iteration ended; always written, whatever the status.
+// How an iteration ended; written for whoever asks, whatever the status.
 template <typename V>
 struct Convergence {
   int iterations;  // Newton steps taken
   V residual;      // m, largest error of a link's length; NaN when no pose was tried
 };
+
+template <typename V>
+constexpr Convergence<V> not_begun() {
+  return {0, std::numeric_limits<V>::quiet_NaN()};
+}
 
 constexpr int largest_iteration_count() { return 20; }
 

@@ -78,7 +78,7 @@ Vec3<S> panhard_load(const Params<S>& p, const Motion<S>& m) {
   Vec3<S> load = Vec3<S>::Zero();
   for (int i = 3; i < 6; ++i) {
     const S per_speed = p.panhard_friction * m.reciprocal_length[i] * m.reciprocal_length[i];
-    load -= per_speed * (m.joint[i].transpose() * m.joint_velocity[i]);
+    load -= per_speed * joint_load(m, i, m.joint_velocity[i]);
   }
   return load;
 }
@@ -120,8 +120,7 @@ template <typename S>
 sms_status derivative(const Platform<S>& platform, const PlatformState<S>& state, const PlatformInput<S>& input,
                       PlatformTerms<S>& t, PlatformState<S>& rate) {
   Pose<S> pose;
-  Convergence<ValueOf<S>> convergence;
-  sms_status status = inverse_kinematics(platform.mechanism.geometry, state.q, t.start, pose, t.extension, convergence);
+  sms_status status = inverse_kinematics(platform.mechanism.geometry, state.q, t.start, pose, t.extension);
   if (status != SMS_OK) {
     return status;
   }

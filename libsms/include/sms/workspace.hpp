@@ -23,8 +23,7 @@ template <typename S>
 sms_status stroke_margin_at(const Geometry<S>& g, const Vec3<S>& q, S& margin) {
   Pose<S> pose;
   Vec3<S> extension;
-  Convergence<S> convergence;
-  const sms_status status = inverse_kinematics(g, q, rest_pose(g), pose, extension, convergence);
+  const sms_status status = inverse_kinematics(g, q, rest_pose(g), pose, extension);
   if (status == SMS_OK) {
     margin = stroke_margin(g, extension);
   }
