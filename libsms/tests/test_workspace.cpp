@@ -82,18 +82,22 @@ TEST_CASE("reach ends where the stroke does") {
 
 TEST_CASE("condition numbers: no singularity is near") {
   Random random;
-  double panhard_lowest = 9.0, panhard_highest = 0.0, links_highest = 0.0;
+  double panhard_lowest = 9.0, panhard_highest = 0.0, links_lowest = 9.0, links_highest = 0.0;
   for (int i = 0; i < sms_test::count / 10; ++i) {
     sms::Motion<double> m;
     sms::place(geometry, random_pose(random, geometry), m);
     const sms::Conditioning<double> c = sms::conditioning(m);
     panhard_lowest = std::min(panhard_lowest, c.panhard);
     panhard_highest = std::max(panhard_highest, c.panhard);
+    links_lowest = std::min(links_lowest, c.links);
     links_highest = std::max(links_highest, c.links);
   }
   CHECK(panhard_lowest > 1.02);
   CHECK(panhard_highest < 1.12);
-  CHECK(links_highest < 1.74);
+  CHECK(links_lowest > 1.53);
+  CHECK(links_lowest < 1.545);
+  CHECK(links_highest > 1.66);
+  CHECK(links_highest < 1.75);
 }
 
 TEST_CASE("eigenvalues of a symmetric matrix: residual and orthogonality") {
