@@ -2,11 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <future>
 #include <initializer_list>
 #include <limits>
+#include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "bind.hpp"
@@ -64,23 +65,33 @@ class Output {
   py::ssize_t width_;
 };
 
-// work(begin, end) over all rows, in blocks that as many threads as there are cores take one after the other.
+// work(begin, end) over all rows, in blocks that as many threads as there are cores take one after the other. Large
+// blocks first: two threads that touch the same fresh page of memory would both have it cleared, and a page has two
+// megabytes. Small ones last, so that none waits long for another.
 template <typename Work>
 void in_blocks(py::ssize_t rows, const Work& work) {
-  constexpr py::ssize_t kBlock = 4096, kRowsThatPay = 20000;
+  constexpr py::ssize_t kSmallest = 4096, kRowsThatPay = 20000;
   const py::gil_scoped_release no_python;
   if (rows < kRowsThatPay) {
     work(py::ssize_t(0), rows);
     return;
   }
-  std::atomic<py::ssize_t> next{0};
+  const py::ssize_t threads = std::max(1u, std::thread::hardware_concurrency());
+  std::mutex one_at_a_time;
+  py::ssize_t next = 0;
+  const auto next_block = [&] {
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    const py::ssize_t begin = next, left = rows - begin;
+    next += std::min(left, std::max(kSmallest, left / (2 * threads)));
+    return std::make_pair(begin, next);
+  };
   const auto take = [&] {
-    for (py::ssize_t begin = next.fetch_add(kBlock); begin < rows; begin = next.fetch_add(kBlock)) {
-      work(begin, std::min(begin + kBlock, rows));
+    for (auto block = next_block(); block.first < block.second; block = next_block()) {
+      work(block.first, block.second);
     }
   };
   std::vector<std::future<void>> others;
-  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) {
+  for (py::ssize_t i = 1; i < threads; ++i) {
     others.push_back(std::async(std::launch::async, take));
   }
   take();
