@@ -104,16 +104,19 @@ V largest(const Vec3<V>& v) {
   return v.cwiseAbs().maxCoeff();
 }
 
-// Newton's method from a; false, and a as it was, when it does not settle, or a held piston would have to move.
+// Newton's method from a; false, and a as it was, when it does not settle, or a held piston would have to move. It has
+// settled when a step is so small that its square, which is what is left, is below rounding.
 template <typename V>
 bool solve_together(const FrictionCurve<V> (&curve)[3], const bool (&held)[3], const Mat3<V>& mass,
                     const Vec3<V>& drive, Vec3<V>& a) {
+  using std::sqrt;
+  const V small = V(0.01) * sqrt(std::numeric_limits<V>::epsilon());
   Vec3<V> next = a;
   bool settled = false;
   for (int i = 0; i < 8 && !settled; ++i) {
     const Vec3<V> step = newton_step(curve, held, mass, drive, next);
     next += step;
-    settled = largest(step) <= V(64) * std::numeric_limits<V>::epsilon() * largest(next);
+    settled = largest(step) <= small * largest(next);
   }
   for (int i = 0; i < 3; ++i) {
     const V left = curve[i].direction * (drive(i) - mass.row(i).dot(next));
