@@ -13,6 +13,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from sms.io import check_plant
 from sms.io.errors import InputError
 from sms.io.plausible import extension_range, force_against_pressure, pressure_range
 from sms.io.records import Finding, Record, Severity
@@ -35,16 +36,7 @@ _ORDER: dict[Severity, int] = {"error": 0, "warning": 1, "note": 2}
 
 def check_record(rig: Rig, record: Record) -> tuple[Finding, ...]:
     """Everything found in one record, errors first; includes what was found while reading it."""
-    checks: tuple[Callable[[Rig, Record], Iterable[Finding]], ...] = (
-        _time_order,
-        _time_steps,
-        _stuck,
-        _saturated,
-        _too_short,
-        pressure_range,
-        extension_range,
-        force_against_pressure,
-    )
+    checks = _OF_CYLINDER if rig.kind == "cylinder" else _OF_PLANT
     findings = [*record.findings, *(f for check in checks for f in check(rig, record))]
     # What stands in one line comes before what is true of the whole: it is often the cause of it.
     return tuple(sorted(findings, key=lambda f: (_ORDER[f.severity], f.line or inf)))
@@ -244,3 +236,27 @@ def _too_short(rig: Rig, record: Record) -> Iterator[Finding]:
             f"too short: strokes seen: {strokes}, needed: {STROKES} (one each way)",
             "record the rod moving both ways",
         )
+
+
+_Check = Callable[[Rig, Record], Iterable[Finding]]
+_OF_CYLINDER: tuple[_Check, ...] = (
+    _time_order,
+    _time_steps,
+    _stuck,
+    _saturated,
+    _too_short,
+    pressure_range,
+    extension_range,
+    force_against_pressure,
+)
+_OF_PLANT: tuple[_Check, ...] = (
+    _time_order,
+    _time_steps,
+    check_plant.even_time,
+    check_plant.long_enough,
+    check_plant.dead_channels,
+    check_plant.clipped_channels,
+    pressure_range,
+    check_plant.plausible_extensions,
+)
+"""Of a rig whose records a simulation is held against."""

@@ -46,10 +46,10 @@ def pressure_range(rig: Rig, record: Record) -> Iterator[Finding]:
         yield record.finding(severity, lowest + rig.skip_first, signal, message, remedy)
 
 
-def extension_range(rig: Rig, record: Record) -> Iterator[Finding]:
+def extension_range(rig: Rig, record: Record, signal: str = "extension") -> Iterator[Finding]:
     """The extension must lie within 0 to stroke, but for a zero that was set by hand."""
     stroke = rig.declared("stroke").value
-    extension = record.used(rig, "extension")
+    extension = record.used(rig, signal)
     if extension.size == 0 or np.all(np.isnan(extension)):
         return
     beyond = np.fmax(-extension, extension - stroke)
@@ -64,7 +64,7 @@ def extension_range(rig: Rig, record: Record) -> Iterator[Finding]:
     yield record.finding(
         severity,
         worst + rig.skip_first,
-        "extension",
+        signal,
         f"{1e3 * extension[worst]:.1f} mm lies outside 0 to {1e3 * stroke:g} mm (the stroke"
         f"{origin}) by {100 * share:.0f} %",
         "check its zero (offset), its unit, and the stroke in [parameters]",

@@ -9,13 +9,15 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 from sms.io.errors import InputError, did_you_mean, nearest
 from sms.io.schema import (
+    ControlTable,
     DataTable,
+    ModelTable,
     ParameterTable,
     RecordTable,
     RelatedTable,
@@ -29,7 +31,7 @@ from sms.io.signals import KINDS, SIGNAL_UNITS, column_name, is_pressure
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import PARAMETERS, Parameter
 
-Role = Literal["identify", "validate"]
+Role = Literal["identify", "validate", "test"]
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,8 @@ class SignalSource:
     offset: float = 0.0  #: in the SI unit of the signal
     gauge: bool = False  #: the sensor reads against ambient
     optional: bool = False  #: a record may lack this column
+    noise: float | None = None  #: declared standard deviation of one sample, SI; None: not declared
+    resolution: float = 0.0  #: one step of the converter, SI
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,8 @@ class RecordSource:
     name: str
     file: Path
     role: Role
+    conditions: Mapping[str, float] = field(default_factory=dict)
+    """Parameters known to have another value in this run (SI): an added mass, another supply."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +100,8 @@ class Rig:
     parameters: Mapping[str, Declaration]  #: those that the file mentions
     records: tuple[RecordSource, ...]
     related: tuple[RelatedRig, ...] = ()
+    model: ModelTable = ModelTable()
+    control: ControlTable = ControlTable()
 
     def declared(self, name: str) -> Declaration:
         """What is known of a parameter: from the file, else the default and its uncertainty."""
@@ -129,13 +137,16 @@ def interpret(file: RigFile, path: Path) -> Rig:
         speed_above=speed_above,
         signals=_signals(file, path),
         parameters={
-            name: _declaration(name, table, path) for name, table in file.parameters.items()
+            name: _declaration(name, table, f"{path}, [parameters]")
+            for name, table in file.parameters.items()
         },
         records=_records(file.records, data, path),
         related=tuple(
             RelatedRig(_related_file(table, number, path), table.differs)
             for number, table in enumerate(file.related)
         ),
+        model=file.model,
+        control=file.control,
     )
 
 
@@ -182,11 +193,32 @@ def _signal(signal: str, table: SignalTable, path: Path) -> SignalSource:
         raise InputError(f"{where}: only a pressure can be gauge; remove gauge = true")
     if table.scale == 0.0:
         raise InputError(f"{where}: scale = 0 leaves nothing of the column; write its real scale")
-    return SignalSource(signal, table.column, table.unit, table.scale, offset, table.gauge)
+    noise = None if table.noise is None else _size(signal, table.noise, f"{where}, noise")
+    resolution = 0.0
+    if table.resolution is not None:
+        resolution = _size(signal, table.resolution, f"{where}, resolution")
+    return SignalSource(
+        signal,
+        table.column or column_name(signal),
+        table.unit,
+        table.scale,
+        offset,
+        table.gauge,
+        noise=noise,
+        resolution=resolution,
+    )
 
 
-def _declaration(name: str, table: ParameterTable, path: Path) -> Declaration:
-    where = f"{path}, [parameters] {name}"
+def _size(signal: str, text: str | float, where: str) -> float:
+    """A noise or a resolution in SI: a difference, not negative."""
+    size = interval_to_si(text, SIGNAL_UNITS[signal], where)
+    if size < 0.0:
+        raise InputError(f"{where}: {text} is negative; write its size")
+    return size
+
+
+def _declaration(name: str, table: ParameterTable, where: str) -> Declaration:
+    where = f"{where} {name}"
     if name not in PARAMETERS:
         near = nearest(name, PARAMETERS)
         remedy = f"did you mean '{near}'?" if near else "see the table of parameters (params.def)"
@@ -217,8 +249,13 @@ def _records(tables: list[RecordTable], data: DataTable, path: Path) -> tuple[Re
     files = find_files([table.file for table in tables], data, path)
     records = tuple(
         # "O-ring_1bar.csv.gz" is named "O-ring_1bar" when the rig file gives no name.
-        RecordSource(table.name or Path(file.name.removesuffix(".gz")).stem, file, table.role)
-        for table, file in zip(tables, files, strict=True)
+        RecordSource(
+            table.name or Path(file.name.removesuffix(".gz")).stem,
+            file,
+            table.role,
+            _conditions(table, f"{path}, {place('records', number, 'conditions')}"),
+        )
+        for number, (table, file) in enumerate(zip(tables, files, strict=True))
     )
     if (file := _repeated([str(record.file) for record in records])) is not None:
         raise InputError(
@@ -231,6 +268,14 @@ def _records(tables: list[RecordTable], data: DataTable, path: Path) -> tuple[Re
             'give each its own, name = "..."'
         )
     return records
+
+
+def _conditions(table: RecordTable, where: str) -> dict[str, float]:
+    """What was different in one run, in SI."""
+    return {
+        name: _declaration(name, ParameterTable(value=value), where).value
+        for name, value in table.conditions.items()
+    }
 
 
 def _repeated(words: list[str]) -> str | None:

@@ -43,9 +43,27 @@ class Table(BaseModel):
 class RigTable(Table):
     """[rig]: what was measured."""
 
-    kind: Literal["cylinder"]
+    kind: Literal["cylinder", "tank", "bench", "platform"]
     title: str = ""
     notes: str = ""
+
+
+class ModelTable(Table):
+    """[model]: which laws the simulation uses; the words are those of the core's enums."""
+
+    friction: Literal["acceleration_dependent", "two_branch", "stribeck", "dahl", "lugre"] = (
+        "acceleration_dependent"
+    )
+    valve: Literal["iso_0_4_mpa", "iso_0_2_mpa", "classic"] = "iso_0_4_mpa"
+    chambers: Literal["polytropic", "energy"] = "polytropic"
+
+
+class ControlTable(Table):
+    """[control]: whether a controller closed the loop, and whether it is simulated too."""
+
+    loop: Literal["open", "closed"] = "open"
+    controller: Literal["recorded", "simulated"] = "recorded"
+    law: Literal["pid", "state_feedback"] = "pid"
 
 
 class DataTable(Table):
@@ -62,11 +80,13 @@ class DataTable(Table):
 class SignalTable(Table):
     """One entry of [signals]: value in SI = scale * column in SI + offset."""
 
-    column: str
+    column: str | None = None
     unit: str | None = None
     scale: float = 1.0
     offset: TextOrNumber | None = None
     gauge: bool = False
+    noise: TextOrNumber | None = None
+    resolution: TextOrNumber | None = None
 
 
 class ParameterTable(Table):
@@ -81,8 +101,9 @@ class RecordTable(Table):
     """One entry of [[records]]."""
 
     file: str
-    role: Literal["identify", "validate"]
+    role: Literal["identify", "validate", "test"]
     name: str | None = None
+    conditions: dict[str, TextOrNumber] = Field(default_factory=dict)
 
 
 class RelatedTable(Table):
@@ -96,6 +117,8 @@ class RigFile(Table):
     """The whole rig file."""
 
     rig: RigTable
+    model: ModelTable = ModelTable()
+    control: ControlTable = ControlTable()
     data: DataTable = DataTable()
     signals: dict[str, Annotated[SignalTable, _short_form("column")]] | None = None
     parameters: dict[str, Annotated[ParameterTable, _short_form("value")]] = Field(
@@ -107,6 +130,8 @@ class RigFile(Table):
 
 _MODELS: Mapping[str, type[Table]] = {
     "rig": RigTable,
+    "model": ModelTable,
+    "control": ControlTable,
     "data": DataTable,
     "signals": SignalTable,
     "parameters": ParameterTable,

@@ -20,13 +20,47 @@ class Kind:
         return self.needed + self.optional
 
 
+LEGS = (1, 2, 3)
+"""The platform's actuators; a signal of one of them ends in its number: extension_2."""
+
+_UNITS = {
+    "time": "s",
+    "valve_command": "V",
+    "setpoint": "m",
+    "extension": "m",
+    "chamber_pressure_lower": "Pa",
+    "chamber_pressure_upper": "Pa",
+    "rod_force": "N",
+    "supply_pressure": "Pa",
+    "tank_pressure": "Pa",
+    "tank_temperature": "K",
+    "roll": "rad",
+    "pitch": "rad",
+}
+
+
+def of_legs(*signals: str) -> tuple[str, ...]:
+    """The names of signals that each leg of the platform has: extension -> extension_1 .. extension_3."""
+    return tuple(f"{signal}_{leg}" for signal in signals for leg in LEGS)
+
+
+def without_leg(signal: str) -> str:
+    """extension_2 -> extension"""
+    stem, _, leg = signal.rpartition("_")
+    return stem if leg in map(str, LEGS) else signal
+
+
 SIGNAL_UNITS: Mapping[str, str] = MappingProxyType(
-    {
-        "time": "s",
-        "extension": "m",
-        "chamber_pressure_lower": "Pa",
-        "chamber_pressure_upper": "Pa",
-        "rod_force": "N",
+    _UNITS
+    | {
+        name: _UNITS[without_leg(name)]
+        for name in of_legs(
+            "valve_command",
+            "setpoint",
+            "extension",
+            "chamber_pressure_lower",
+            "chamber_pressure_upper",
+        )
     }
 )
 
@@ -36,6 +70,32 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
         "cylinder": Kind(
             needed=("time", "extension", "chamber_pressure_lower", "rod_force"),
             optional=("chamber_pressure_upper",),
+        ),
+        "tank": Kind(
+            needed=("time", "valve_command", "tank_pressure"),
+            optional=("tank_temperature", "supply_pressure"),
+        ),
+        "bench": Kind(
+            needed=(
+                "time",
+                "valve_command",
+                "extension",
+                "chamber_pressure_lower",
+                "chamber_pressure_upper",
+            ),
+            optional=("supply_pressure", "setpoint", "rod_force"),
+        ),
+        "platform": Kind(
+            needed=(
+                "time",
+                *of_legs(
+                    "valve_command",
+                    "extension",
+                    "chamber_pressure_lower",
+                    "chamber_pressure_upper",
+                ),
+            ),
+            optional=("supply_pressure", "roll", "pitch", *of_legs("setpoint")),
         ),
     }
 )

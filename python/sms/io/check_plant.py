@@ -1,0 +1,133 @@
+"""The data check of records that a simulation is held against: tank, bench, platform."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sms.io.plausible import extension_range
+from sms.io.records import Finding, Record
+from sms.io.rig import Rig
+from sms.io.signals import without_leg
+
+JITTER = 0.02  #: of the median step; time is taken as even, loggers round their stamps
+SHORTEST = 2.0  #: s of record, the least that shows a motion beside its start
+DEAD_SHARE = 0.2  #: a channel that stands still for this share of a record while others move
+CLIPPED_SHARE = 0.2  #: a channel at its extreme for this share of a record says nothing there
+MOVES = 0.02  #: of a signal's usual range: what counts as a change
+USUAL_RANGE = {
+    "valve_command": 1.0,
+    "extension": 0.1,
+    "chamber_pressure_lower": 1e5,
+    "chamber_pressure_upper": 1e5,
+    "tank_pressure": 1e5,
+}
+"""SI; what a run of this machine sweeps."""
+ENDS = {"extension", "valve_command", "setpoint", "tank_pressure", "tank_temperature"}
+"""Signals that may rest at an extreme: end stops, a command that is held, a tank that is full."""
+
+Array = NDArray[np.float64]
+
+
+def even_time(rig: Rig, record: Record) -> Iterator[Finding]:
+    """A simulation steps through the record at one rate."""
+    step = np.diff(record.signals["time"])
+    if step.size == 0 or np.any(step <= 0.0):
+        return
+    median = float(np.median(step))
+    off = np.abs(step / median - 1.0)
+    if np.max(off) > 0.5 or np.median(off) > JITTER:
+        worst = int(np.argmax(off))
+        yield record.finding(
+            "error",
+            worst + 1,
+            "time",
+            f"the steps of time are uneven ({step[worst]:.4g} s here, {median:.4g} s in the middle)",
+            "resample the record to one rate, or split it where samples were lost",
+        )
+
+
+def long_enough(rig: Rig, record: Record) -> Iterator[Finding]:
+    time = record.signals["time"]
+    length = float(time[-1] - time[0]) if time.size else 0.0
+    if length < SHORTEST:
+        yield record.finding(
+            "error",
+            None,
+            None,
+            f"too short: {length:.3g} s of record, needed: {SHORTEST:g} s",
+            "record a longer run",
+        )
+
+
+def dead_channels(rig: Rig, record: Record) -> Iterator[Finding]:
+    """A channel that holds one value exactly while its neighbours move."""
+    moving = {
+        name: _changes(record.signals[name], USUAL_RANGE[without_leg(name)])
+        for name in record.signals
+        if without_leg(name) in USUAL_RANGE
+    }
+    for name, values in record.signals.items():
+        if without_leg(name) not in USUAL_RANGE or without_leg(name) == "valve_command":
+            continue
+        others = [m for other, m in moving.items() if other != name]
+        start, length = _longest_constant(values)
+        if length < DEAD_SHARE * values.size or not others:
+            continue
+        most = max(float(np.mean(m[start : start + length])) for m in others)
+        at_end = without_leg(name) in ENDS and not _is_centre(values, start)
+        if most > 0.5 and not at_end:
+            yield record.finding(
+                "error",
+                start,
+                name,
+                f"holds one value for {100 * length / values.size:.0f} % of the record while the "
+                "other signals move",
+                "the sensor or its cable is dead there; repair it, or leave this record out",
+            )
+
+
+def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
+    """A channel that rests at its own extreme for a large part of a record."""
+    for name, values in record.signals.items():
+        if without_leg(name) not in USUAL_RANGE or without_leg(name) in ENDS:
+            continue
+        for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
+            share = float(np.mean(values == extreme))
+            if share > CLIPPED_SHARE and not np.ptp(values) == 0.0:
+                yield record.finding(
+                    "error",
+                    int(np.argmax(values == extreme)),
+                    name,
+                    f"sits at its {word} value for {100 * share:.0f} % of the record",
+                    "the sensor or its amplifier is saturated; choose another range",
+                )
+
+
+def plausible_extensions(rig: Rig, record: Record) -> Iterator[Finding]:
+    for name in record.signals:
+        if without_leg(name) == "extension":
+            yield from extension_range(rig, record, name)
+
+
+def _changes(values: Array, usual: float) -> NDArray[np.bool_]:
+    """Where a signal moves by more than MOVES of its usual range within a fiftieth of the record."""
+    window = max(values.size // 50, 1)
+    span = np.zeros(values.size, dtype=np.bool_)
+    span[window:] = np.abs(values[window:] - values[:-window]) > MOVES * usual
+    return span
+
+
+def _longest_constant(values: Array) -> tuple[int, int]:
+    """Start and length of the longest stretch of one value."""
+    edges = np.flatnonzero(np.concatenate(([True], values[1:] != values[:-1])))
+    lengths = np.diff(np.append(edges, values.size))
+    longest = int(np.argmax(lengths))
+    return int(edges[longest]), int(lengths[longest])
+
+
+def _is_centre(values: Array, at: int) -> bool:
+    """Whether the value at one sample is neither the largest nor the smallest of the record."""
+    return bool(np.nanmin(values) < values[at] < np.nanmax(values))

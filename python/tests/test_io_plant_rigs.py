@@ -1,0 +1,142 @@
+"""Rig files of tank, bench and platform: what is new in them, and the data check of their records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sms.io import InputError, load_rig, write_record
+from sms.io.check import check_record
+from sms.io.records import Record, load_record
+from sms.io.signals import KINDS, SIGNAL_UNITS, of_legs, without_leg
+
+Array = NDArray[np.float64]
+
+BENCH = """
+[rig]
+kind = "bench"
+
+[model]
+friction = "stribeck"
+
+[control]
+loop = "closed"
+controller = "recorded"
+
+[signals]
+time = "time"
+valve_command = {}
+extension = { noise = "0.05 mm", resolution = "0.1 mm" }
+chamber_pressure_lower = { noise = "4 mbar" }
+chamber_pressure_upper = { noise = "400 Pa" }
+
+[[records]]
+file = "one.csv"
+role = "identify"
+conditions = { moving_mass = "23.6 kg" }
+
+[[records]]
+file = "two.csv"
+role = "test"
+"""
+
+
+def bench_signals(samples: int = 1200) -> dict[str, Array]:
+    time = 0.005 * np.arange(samples)
+    noise = np.random.default_rng(1)
+    wave = np.sin(2.0 * time)
+    return {
+        "time": time,
+        "valve_command": 5.0 + wave,
+        "extension": 0.2 - 0.1 * np.cos(2.0 * time) + noise.normal(0.0, 5e-5, samples),
+        "chamber_pressure_lower": 3e5 + 2e4 * wave + noise.normal(0.0, 400.0, samples),
+        "chamber_pressure_upper": 2.9e5 - 2e4 * wave + noise.normal(0.0, 400.0, samples),
+    }
+
+
+def bench(folder: Path, text: str = BENCH, **changed: Array) -> Path:
+    for name in ("one.csv", "two.csv"):
+        write_record(folder / name, bench_signals() | changed)
+    (folder / "rig.toml").write_text(text)
+    return folder / "rig.toml"
+
+
+def first_record(path: Path) -> tuple[list[str], Record]:
+    rig = load_rig(path)
+    record = load_record(rig, rig.records[0])
+    return [f"{f.severity} {f.signal}" for f in check_record(rig, record)], record
+
+
+def test_a_bench_rig_says_its_laws_its_loop_its_noise_and_what_differs_in_a_run(
+    tmp_path: Path,
+) -> None:
+    rig = load_rig(bench(tmp_path))
+    assert (rig.kind, rig.model.friction, rig.model.valve) == ("bench", "stribeck", "iso_0_4_mpa")
+    assert (rig.control.loop, rig.control.controller) == ("closed", "recorded")
+    assert rig.signals["extension"].noise == pytest.approx(5e-5)
+    assert rig.signals["extension"].resolution == pytest.approx(1e-4)
+    assert rig.signals["chamber_pressure_lower"].noise == pytest.approx(400.0)
+    assert rig.signals["valve_command"].noise is None
+    assert rig.signals["extension"].column == "extension [m]"
+    assert [(r.role, dict(r.conditions)) for r in rig.records] == [
+        ("identify", {"moving_mass": 23.6}),
+        ("test", {}),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right", "sentence"),
+    [
+        ('"stribeck"', '"strybeck"', "did you mean 'stribeck'"),
+        ('"0.05 mm"', '"-1 mm"', "is negative"),
+        ('"0.05 mm"', '"5 Pa"', "does not fit"),
+        ('moving_mass = "23.6 kg"', 'moving_maas = "23.6 kg"', "did you mean 'moving_mass'"),
+        ('moving_mass = "23.6 kg"', 'moving_mass = "-1 kg"', "outside the allowed range"),
+        ('"bench"', '"bank"', "'bank' is not known"),
+    ],
+)
+def test_a_mistake_is_named(tmp_path: Path, wrong: str, right: str, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        load_rig(bench(tmp_path, BENCH.replace(wrong, right)))
+
+
+def test_signals_of_the_legs_have_units() -> None:
+    assert of_legs("extension") == ("extension_1", "extension_2", "extension_3")
+    assert without_leg("chamber_pressure_lower_2") == "chamber_pressure_lower"
+    assert without_leg("chamber_pressure_lower") == "chamber_pressure_lower"
+    for kind in KINDS.values():
+        assert set(kind.signals) <= set(SIGNAL_UNITS)
+    assert SIGNAL_UNITS["chamber_pressure_upper_3"] == "Pa"
+
+
+def test_a_healthy_record_passes(tmp_path: Path) -> None:
+    found, _ = first_record(bench(tmp_path))
+    assert found == []
+
+
+def test_a_dead_channel_is_an_error(tmp_path: Path) -> None:
+    dead = bench_signals()["chamber_pressure_upper"]
+    dead[400:] = dead[400]
+    found, _ = first_record(bench(tmp_path, chamber_pressure_upper=dead))
+    assert "error chamber_pressure_upper" in found
+
+
+def test_a_channel_that_clips_through_the_run_is_an_error(tmp_path: Path) -> None:
+    clipped = np.minimum(bench_signals()["chamber_pressure_lower"], 3e5)
+    found, _ = first_record(bench(tmp_path, chamber_pressure_lower=clipped))
+    assert "error chamber_pressure_lower" in found
+
+
+def test_uneven_time_is_an_error(tmp_path: Path) -> None:
+    time = bench_signals()["time"].copy()
+    time[600:] += 0.05
+    found, _ = first_record(bench(tmp_path, time=time))
+    assert "error time" in found
+
+
+def test_a_piston_that_rests_at_its_end_is_no_fault(tmp_path: Path) -> None:
+    extension = np.clip(bench_signals()["extension"], 0.15, None)
+    found, _ = first_record(bench(tmp_path, extension=extension))
+    assert found == []
