@@ -96,7 +96,7 @@ def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
             continue
         for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
             share = float(np.mean(values == extreme))
-            if share > CLIPPED_SHARE and not np.ptp(values) == 0.0:
+            if share > CLIPPED_SHARE and np.ptp(values) != 0.0:
                 yield record.finding(
                     "error",
                     int(np.argmax(values == extreme)),

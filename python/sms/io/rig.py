@@ -100,8 +100,8 @@ class Rig:
     parameters: Mapping[str, Declaration]  #: those that the file mentions
     records: tuple[RecordSource, ...]
     related: tuple[RelatedRig, ...] = ()
-    model: ModelTable = ModelTable()
-    control: ControlTable = ControlTable()
+    model: ModelTable = field(default_factory=ModelTable)
+    control: ControlTable = field(default_factory=ControlTable)
 
     def declared(self, name: str) -> Declaration:
         """What is known of a parameter: from the file, else the default and its uncertainty."""
