@@ -2,8 +2,10 @@
 #include <pybind11/eigen.h>
 
 #include "bind.hpp"
+#include "choice.hpp"
 #include "estimation/cylinder.hpp"
 #include "estimation/fit.hpp"
+#include "estimation/tank.hpp"
 
 namespace sms_python {
 namespace {
@@ -24,16 +26,28 @@ est::CylinderRecord make_cylinder_record(Eigen::VectorXd extension, Eigen::Vecto
           gauge_upper};
 }
 
+est::TankProblem make_tank_problem(Eigen::VectorXd time, Eigen::VectorXd pressure, bool charge,
+                                   Eigen::VectorXd temperature, Eigen::VectorXd supply, const std::string& law,
+                                   const std::string& heat) {
+  sms::FlowTestKind kind;
+  kind.law = choice<sms::FlowLaw>("law", law, {{"iso", sms::FlowLaw::iso}, {"classic", sms::FlowLaw::classic}});
+  kind.heat = choice<sms::TankHeat>("heat", heat,
+                                    {{"polytropic", sms::TankHeat::polytropic}, {"energy", sms::TankHeat::energy}});
+  return {{std::move(time), std::move(pressure), std::move(temperature), std::move(supply), charge}, kind};
+}
+
 using NamedBounds = std::tuple<std::string, double, double, double>;
 
 est::Fit fit(const est::Problem& problem, const Params& start, const std::vector<NamedBounds>& free,
-             const Eigen::VectorXd& weight, int max_iterations) {
+             const Eigen::VectorXd& weight, int max_iterations, double tolerance, double huber) {
   std::vector<est::FreeParam> bounds;
   for (const NamedBounds& f : free) {
     bounds.push_back({param_index(std::get<0>(f)), std::get<1>(f), std::get<2>(f), std::get<3>(f)});
   }
   est::FitOptions options;
   options.max_iterations = max_iterations;
+  options.tolerance = tolerance;
+  options.huber = huber;
   py::gil_scoped_release unlocked;
   return est::fit(problem, start, bounds, weight, options);
 }
@@ -67,18 +81,30 @@ void bind_estimation(py::module_& m) {
   py::class_<est::CylinderProblem, est::Problem>(m, "CylinderProblem")
       .def(py::init<std::vector<est::CylinderRecord>>(), py::arg("records"));
 
+  py::class_<est::TankProblem, est::Problem>(
+      m, "TankProblem",
+      "One charge or discharge of a tank: time s, pressure Pa absolute as read, temperature K of a thermocouple and "
+      "supply Pa absolute where they were measured; arrays (n,). Residuals: pressures, then temperatures.")
+      .def(py::init(&make_tank_problem), py::kw_only(), py::arg("time"), py::arg("pressure"), py::arg("charge"),
+           py::arg("temperature") = Eigen::VectorXd(), py::arg("supply") = Eigen::VectorXd(), py::arg("law") = "iso",
+           py::arg("heat") = "polytropic")
+      .def_property_readonly("step", &est::TankProblem::step, "s, of the integration");
+
   py::class_<est::Fit>(m, "Fit", "The result of a least-squares fit.")
       .def_readonly("params", &est::Fit::params)
       .def_readonly("residual", &est::Fit::residual, "(rows,), predicted minus measured at params, not weighted")
       .def_readonly("jacobian", &est::Fit::jacobian, "(rows, free), not weighted")
       .def_readonly("at_bound", &est::Fit::at_bound)
       .def_readonly("cost", &est::Fit::cost, "sum of the squared weighted residuals")
+      .def_readonly("condition", &est::Fit::condition,
+                    "condition number of the weighted jacobian with columns of length one")
       .def_readonly("iterations", &est::Fit::iterations)
       .def_readonly("converged", &est::Fit::converged)
       .def_readonly("message", &est::Fit::message);
   m.def("fit", &fit, py::arg("problem"), py::arg("start"), py::arg("free"), py::arg("weight") = Eigen::VectorXd(),
-        py::arg("max_iterations") = 100,
-        "Least squares over the parameters free = [(name, lower, upper, pull), ...]; ValueError for a bad start.");
+        py::arg("max_iterations") = 100, py::arg("tolerance") = 1e-12, py::arg("huber") = 0.0,
+        "Least squares over the parameters free = [(name, lower, upper, pull), ...], by Huber's loss beyond `huber` "
+        "weighted units; ValueError for a bad start and for a parameter that the records do not feel.");
 }
 
 }  // namespace sms_python

@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/SVD>
 #include <cmath>
 #include <stdexcept>
 
@@ -17,49 +18,86 @@ std::vector<int> indices(const std::vector<FreeParam>& free) {
   return out;
 }
 
-Params<double> with_values(Params<double> params, const std::vector<FreeParam>& free, const double* value) {
+Params<double> with_values(Params<double> params, const std::vector<FreeParam>& free, const Eigen::VectorXd& value) {
   for (std::size_t k = 0; k < free.size(); ++k) {
-    param(params, free[k].index) = value[k];
+    param(params, free[k].index) = value[static_cast<Eigen::Index>(k)];
   }
   return params;
 }
 
+Eigen::VectorXd values_of(Params<double> params, const std::vector<FreeParam>& free) {
+  Eigen::VectorXd value(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    value[static_cast<Eigen::Index>(k)] = param(params, free[k].index);
+  }
+  return value;
+}
+
+// Huber's loss as a residual: its square is that of r up to `limit`, and grows with |r| from there on.
+struct Softened {
+  double value;
+  double slope;  // against r
+};
+
+Softened soften(double r, double limit) {
+  if (!(limit > 0.0) || std::abs(r) <= limit) {
+    return {r, 1.0};
+  }
+  const double size = std::sqrt(limit * (2.0 * std::abs(r) - limit));
+  return {std::copysign(size, r), limit / size};
+}
+
+// What is minimised, with what it is made of.
+struct Aim {
+  const Problem& problem;
+  const Params<double>& start;
+  const std::vector<FreeParam>& free;
+  const Eigen::VectorXd& weight;
+  double huber;
+  Eigen::VectorXd scale;  // the solver's x_k is scale_k times the parameter
+};
+
 // The whole problem as one block of residuals, the pulls last.
 class Residuals : public ceres::CostFunction {
  public:
-  Residuals(const Problem& problem, const Params<double>& start, const std::vector<FreeParam>& free,
-            const Eigen::VectorXd& weight)
-      : problem_(problem), start_(start), free_(free), indices_(indices(free)), weight_(weight) {
-    set_num_residuals(problem.rows() + static_cast<int>(free.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(free.size()));
+  explicit Residuals(const Aim& aim) : aim_(aim), indices_(indices(aim.free)) {
+    set_num_residuals(aim.problem.rows() + static_cast<int>(aim.free.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(aim.free.size()));
   }
 
-  bool Evaluate(double const* const* values, double* residuals, double** jacobians) const override {
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
     const bool want = jacobians != nullptr && jacobians[0] != nullptr;
+    const Eigen::Index rows = aim_.problem.rows(), columns = aim_.scale.size();
+    const Eigen::VectorXd value = Eigen::Map<const Eigen::VectorXd>(x[0], columns).cwiseQuotient(aim_.scale);
     Eigen::VectorXd residual;
     RowMatrix jacobian;
-    problem_.evaluate(with_values(start_, free_, values[0]), indices_, &residual, want ? &jacobian : nullptr);
-    Eigen::Map<Eigen::VectorXd>(residuals, residual.size()) = weight_.cwiseProduct(residual);
-    for (std::size_t k = 0; k < free_.size(); ++k) {
-      residuals[problem_.rows() + static_cast<int>(k)] = free_[k].pull * (values[0][k] - param(start_, free_[k].index));
+    aim_.problem.evaluate(with_values(aim_.start, aim_.free, value), indices_, &residual, want ? &jacobian : nullptr);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const Softened soft = soften(aim_.weight[i] * residual[i], aim_.huber);
+      residuals[i] = soft.value;
+      if (want) {
+        jacobian.row(i) *= aim_.weight[i] * soft.slope;
+      }
+    }
+    const Eigen::VectorXd from_start = value - values_of(aim_.start, aim_.free);
+    for (std::size_t k = 0; k < aim_.free.size(); ++k) {
+      residuals[rows + static_cast<Eigen::Index>(k)] = aim_.free[k].pull * from_start[static_cast<Eigen::Index>(k)];
     }
     if (want) {
-      Eigen::Map<RowMatrix> all(jacobians[0], num_residuals(), jacobian.cols());
-      all.topRows(jacobian.rows()) = weight_.asDiagonal() * jacobian;
-      all.bottomRows(jacobian.cols()).setZero();
-      for (std::size_t k = 0; k < free_.size(); ++k) {
-        all(problem_.rows() + static_cast<int>(k), static_cast<int>(k)) = free_[k].pull;
+      Eigen::Map<RowMatrix> all(jacobians[0], num_residuals(), columns);
+      all.topRows(rows) = jacobian * aim_.scale.cwiseInverse().asDiagonal();
+      all.bottomRows(columns).setZero();
+      for (std::size_t k = 0; k < aim_.free.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        all(rows + i, i) = aim_.free[k].pull / aim_.scale[i];
       }
     }
     return residual.allFinite();
   }
 
  private:
-  const Problem& problem_;
-  const Params<double>& start_;
-  const std::vector<FreeParam>& free_;
+  const Aim& aim_;
   std::vector<int> indices_;
-  const Eigen::VectorXd& weight_;
 };
 
 void check_start(const Params<double>& start, const std::vector<FreeParam>& free) {
@@ -73,6 +111,39 @@ void check_start(const Params<double>& start, const std::vector<FreeParam>& free
   }
 }
 
+// How far each parameter moves the weighted residual; one where only a pull holds it.
+Eigen::VectorXd scales(const Aim& aim) {
+  Eigen::VectorXd residual;
+  RowMatrix jacobian;
+  aim.problem.evaluate(aim.start, indices(aim.free), &residual, &jacobian);
+  if (!residual.allFinite()) {
+    throw std::invalid_argument("fit: the residual at the start is not finite");
+  }
+  Eigen::VectorXd scale = (aim.weight.asDiagonal() * jacobian).colwise().norm();
+  for (std::size_t k = 0; k < aim.free.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (scale[i] > 0.0 && std::isfinite(scale[i])) {
+      continue;
+    }
+    if (!(aim.free[k].pull > 0.0)) {
+      throw std::invalid_argument(std::string("fit: these records do not feel ") +
+                                  sms_param_describe(aim.free[k].index)->name + " at its start; leave it fixed");
+    }
+    scale[i] = aim.free[k].pull;
+  }
+  return scale;
+}
+
+double condition_number(const RowMatrix& jacobian, const Eigen::VectorXd& weight) {
+  Eigen::MatrixXd columns = weight.asDiagonal() * jacobian;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    const double length = columns.col(k).norm();
+    columns.col(k) /= length > 0.0 ? length : 1.0;
+  }
+  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(columns.transpose() * columns).singularValues();
+  return std::sqrt(singular[0] / singular[singular.size() - 1]);
+}
+
 ceres::Solver::Options solver_options(const FitOptions& options) {
   ceres::Solver::Options out;
   out.linear_solver_type = ceres::DENSE_QR;
@@ -82,6 +153,27 @@ ceres::Solver::Options solver_options(const FitOptions& options) {
   out.gradient_tolerance = 1e-14;
   out.logging_type = ceres::SILENT;
   return out;
+}
+
+// Moves fit.params from the start to the minimum.
+void minimise(const Aim& aim, const FitOptions& options, Fit* fit) {
+  Eigen::VectorXd x = values_of(aim.start, aim.free).cwiseProduct(aim.scale);
+  ceres::Problem ceres_problem;
+  ceres_problem.AddResidualBlock(new Residuals(aim), nullptr, x.data());
+  for (std::size_t k = 0; k < aim.free.size(); ++k) {
+    const int i = static_cast<int>(k);
+    ceres_problem.SetParameterLowerBound(x.data(), i, aim.free[k].lower * aim.scale[i]);
+    ceres_problem.SetParameterUpperBound(x.data(), i, aim.free[k].upper * aim.scale[i]);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(options), &ceres_problem, &summary);
+  if (summary.termination_type == ceres::FAILURE) {
+    throw std::invalid_argument("fit: " + summary.message);
+  }
+  fit->params = with_values(aim.start, aim.free, x.cwiseQuotient(aim.scale));
+  fit->iterations = static_cast<int>(summary.iterations.size()) - 1;
+  fit->converged = summary.termination_type == ceres::CONVERGENCE;
+  fit->message = summary.message;
 }
 
 }  // namespace
@@ -98,29 +190,19 @@ Fit fit(const Problem& problem, const Params<double>& start, const std::vector<F
   Fit out;
   out.params = start;
   out.converged = true;
+  Aim aim = {problem, start, free, w, options.huber, {}};
   if (!free.empty()) {
-    std::vector<double> value;
-    ceres::Problem ceres_problem;
-    for (const FreeParam& f : free) {
-      value.push_back(param(start, f.index));
-    }
-    ceres_problem.AddResidualBlock(new Residuals(problem, start, free, w), nullptr, value.data());
-    for (std::size_t k = 0; k < free.size(); ++k) {
-      ceres_problem.SetParameterLowerBound(value.data(), static_cast<int>(k), free[k].lower);
-      ceres_problem.SetParameterUpperBound(value.data(), static_cast<int>(k), free[k].upper);
-    }
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver_options(options), &ceres_problem, &summary);
-    if (summary.termination_type == ceres::FAILURE) {
-      throw std::invalid_argument("fit: " + summary.message);
-    }
-    out.params = with_values(start, free, value.data());
-    out.iterations = static_cast<int>(summary.iterations.size()) - 1;
-    out.converged = summary.termination_type == ceres::CONVERGENCE;
-    out.message = summary.message;
+    aim.scale = scales(aim);
+    minimise(aim, options, &out);
   }
   problem.evaluate(out.params, indices(free), &out.residual, &out.jacobian);
-  out.cost = w.cwiseProduct(out.residual).squaredNorm();
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    const double r = soften(w[i] * out.residual[i], options.huber).value;
+    out.cost += r * r;
+  }
+  if (!free.empty()) {
+    out.condition = condition_number(out.jacobian, w);
+  }
   for (const FreeParam& f : free) {
     const double value = param(out.params, f.index);
     const double margin = 1e-9 * (f.upper - f.lower);
