@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
-from sms import _core, cli_mechanism
+from sms import _core, cli_identify, cli_mechanism
 from sms.io.errors import InputError
 
 app = typer.Typer(
@@ -93,6 +93,7 @@ def diagnose(
 
 
 cli_mechanism.register(app)
+cli_identify.register(app)
 
 
 def main() -> None:

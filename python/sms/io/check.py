@@ -36,7 +36,7 @@ _ORDER: dict[Severity, int] = {"error": 0, "warning": 1, "note": 2}
 
 def check_record(rig: Rig, record: Record) -> tuple[Finding, ...]:
     """Everything found in one record, errors first; includes what was found while reading it."""
-    checks = _OF_CYLINDER if rig.kind == "cylinder" else _OF_PLANT
+    checks = {"cylinder": _OF_CYLINDER, "flow_test": _OF_FLOW_TEST}.get(rig.kind, _OF_PLANT)
     findings = [*record.findings, *(f for check in checks for f in check(rig, record))]
     # What stands in one line comes before what is true of the whole: it is often the cause of it.
     return tuple(sorted(findings, key=lambda f: (_ORDER[f.severity], f.line or inf)))
@@ -249,6 +249,8 @@ _OF_CYLINDER: tuple[_Check, ...] = (
     extension_range,
     force_against_pressure,
 )
+_OF_FLOW_TEST: tuple[_Check, ...] = (_time_order, _time_steps, pressure_range)
+"""What a record of a tank prevents is said by the identification (flow_record.py)."""
 _OF_PLANT: tuple[_Check, ...] = (
     _time_order,
     _time_steps,

@@ -71,6 +71,11 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             needed=("time", "extension", "chamber_pressure_lower", "rod_force"),
             optional=("chamber_pressure_upper",),
         ),
+        # A tank charged or discharged through a component whose opening is held.
+        "flow_test": Kind(
+            needed=("time", "tank_pressure"),
+            optional=("supply_pressure", "tank_temperature"),
+        ),
         "tank": Kind(
             needed=("time", "valve_command", "tank_pressure"),
             optional=("tank_temperature", "supply_pressure"),

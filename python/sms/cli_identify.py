@@ -1,0 +1,111 @@
+"""The commands `sms identify ...`: from test-bench records to parameters with errors."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
+
+RigFile = Annotated[
+    Path, typer.Argument(help="The rig file (TOML): what was measured, what is known, which records.")
+]
+Out = Annotated[Path, typer.Option(help="Folder for the parameter file, the JSON and report.html.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the JSON instead of the summary.")]
+Huber = Annotated[
+    float,
+    typer.Option(
+        help="Robust loss: readings further off than this many standard deviations of the noise count "
+        "with their distance, not its square. 0: least squares.",
+        min=0.0,
+    ),
+]
+
+identify = typer.Typer(
+    help="From test-bench records to parameters: values, errors, and what these records cannot tell.",
+    no_args_is_help=True,
+    rich_markup_mode="markdown",
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands."""
+    app.add_typer(identify, name="identify")
+
+
+@identify.command(
+    epilog="Example: **sms identify flow valve.toml --out flow** writes flow/flow.toml (the valve map, "
+    "read by load_valve_map), flow/flow.json (covariances, diagnostics) and flow/report.html."
+)
+def flow(
+    rig: RigFile,
+    out: Out = Path("flow"),
+    huber: Huber = 0.0,
+    monotone: Annotated[
+        bool, typer.Option(help="Keep C from falling while the valve opens, in the map.")
+    ] = True,
+    as_json: AsJson = False,
+) -> None:
+    """C, b and m of a valve from charges and discharges of a tank.
+
+    The rig is of kind *flow_test*; each record holds one charge or discharge at a constant spool position, said in
+    its *conditions* (spool_position, supply_pressure). Every record is fitted by the ISO 6358 law and by the classic
+    one; a sensor that saturates, the moment of opening, the start and the outside pressure are part of the fit. What
+    a record cannot tell is called not identifiable.
+    """
+    from sms.diagnosis.files import check_output_folder  # noqa: PLC0415 (scipy takes a second)
+    from sms.identification.flow import fit_records  # noqa: PLC0415
+    from sms.identification.flow_result import assemble, parameter_file  # noqa: PLC0415
+    from sms.identification.flow_rig import load_flow_test  # noqa: PLC0415
+    from sms.identification.output import json_text  # noqa: PLC0415
+    from sms.report.flow import flow_html  # noqa: PLC0415
+
+    check_output_folder(out)
+    with _progress("reading records") as update:
+        loaded, records, findings = load_flow_test(rig)
+        heat = loaded.model.chambers
+        fits = fit_records(records, loaded.declared, heat, huber, progress=update)
+        ratios = [loaded.declared(f"{way}flow_heat_ratio").value for way in ("in", "out")]
+        result = assemble(
+            loaded.title, rig.name, heat, (ratios[0], ratios[1]), fits, findings, monotone
+        )
+        page = flow_html(result)
+    text = json_text(result.to_dict())
+    files = _write(
+        out, {"flow.toml": parameter_file(result), "flow.json": text, "report.html": page}
+    )
+    if as_json:
+        print(text, end="")
+        return
+    for sentence in result.sentences():
+        print(f"- {sentence}")
+    for fit in result.fits:
+        for fault in fit.look.faults:
+            print(f"- {fit.record.name}: {fault}")
+    print(f"written: {', '.join(str(f) for f in files)}")
+
+
+# ---- shared ------------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _progress(first: str) -> Iterator[Any]:
+    """A bar on the terminal; yields update(text, share done)."""
+    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn()
+    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as progress:
+        task = progress.add_task(first, total=1.0)
+        yield lambda text, done: progress.update(task, description=text, completed=done)
+
+
+def _write(out: Path, texts: dict[str, str]) -> Sequence[Path]:
+    """Each file whole or not at all."""
+    from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
+
+    for name, text in texts.items():
+        write_text_atomically(out / name, text)
+    return [out / name for name in texts]

@@ -1,0 +1,1 @@
+"""From test-bench records to parameters with honest errors."""

@@ -1,0 +1,316 @@
+"""One fit, and what can honestly be said of it: errors, intervals, what it could not tell.
+
+`estimate` fits a Problem of the core and gives the covariance with coloured residuals, and
+warnings at bounds and at a bad condition. `profile` follows one parameter while all others are
+fitted again: its interval is where the cost stays below a chi-squared limit, and where that never
+rises the parameter is not identifiable, whatever number the fit ended on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from sms import _core
+from sms.diagnosis.result import Array
+from sms.identification.colour import Colour, colour_of, coloured_meat
+from sms.parameters import PARAMETERS
+
+BAD_CONDITION = 1e4
+"""Condition number beyond which two parameters are nearly one; exact derivatives reach 1e7."""
+LIMIT_95 = float(chi2.ppf(0.95, 1))
+_REFITS = 14  # a side of a profile
+
+
+@dataclass(frozen=True)
+class Free:
+    """A parameter to fit, within bounds, and what is known of it before."""
+
+    name: str
+    lower: float
+    upper: float
+    known_to: float = 0.0
+    """Standard uncertainty of its start; 0: unknown."""
+
+    @classmethod
+    def of(cls, name: str, known_to: float = 0.0) -> Free:
+        """Within the bounds of params.def."""
+        return cls(name, PARAMETERS[name].lower, PARAMETERS[name].upper, known_to)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The result of one fit. Arrays follow `free`; SI units."""
+
+    problem: _core.Problem
+    start: _core.Params
+    free: tuple[Free, ...]
+    weight: Array
+    huber: float
+    params: _core.Params
+    value: Array
+    covariance: Array
+    """(k, k); rows and columns of a parameter at its bound are nan."""
+    inflation: Array
+    """(k,): variance with coloured residuals over that with white ones."""
+    scale: float
+    """Root mean square of a weighted residual: 1 when the weights are the noise's."""
+    colour: Colour
+    residual: Array
+    jacobian: Array
+    cost: float
+    condition: float
+    at_bound: tuple[bool, ...]
+    converged: bool
+    iterations: int
+    starts: int = 1
+    minima: int = 1
+    """Distinct minima that the starts ended in."""
+
+    def index(self, name: str) -> int:
+        """Where a parameter stands in the arrays."""
+        return [f.name for f in self.free].index(name)
+
+    def sd(self, name: str) -> float:
+        """Standard uncertainty from the fit alone; nan at a bound."""
+        i = self.index(name)
+        return float(np.sqrt(self.covariance[i, i]))
+
+    @property
+    def correlation(self) -> Array:
+        """(k, k)"""
+        sd = np.sqrt(np.diag(self.covariance))
+        return np.asarray(self.covariance / np.outer(sd, sd))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a reader must know before the numbers."""
+        said = []
+        for f, bound, value in zip(self.free, self.at_bound, self.value, strict=True):
+            if bound:
+                said.append(f"{f.name} ended at its bound, {value:g}: no estimate")
+        if self.condition > BAD_CONDITION:
+            said.append(
+                f"condition number {self.condition:.2g}: some parameters are nearly one to this "
+                "record; see the correlation map"
+            )
+        if not self.converged:
+            said.append(f"the fit did not converge in {self.iterations} steps")
+        return tuple(said)
+
+
+def estimate(
+    problem: _core.Problem,
+    starts: Sequence[_core.Params],
+    free: Sequence[Free],
+    weight: Array,
+    counted: NDArray[np.bool_] | None = None,
+    huber: float = 0.0,
+) -> Estimate:
+    """Fit `free` to a problem from each of `starts` and keep the best.
+
+    Args:
+        problem: whose rows follow each other in time.
+        starts: of all parameters; those that are not free stay as in the first.
+        free: what to fit.
+        weight: (rows,), 1 over the standard deviation of a row.
+        counted: (rows,), the rows that the noise is judged on; by default all.
+        huber: weighted residuals beyond it count with their size; 0: least squares.
+
+    Raises: ValueError for a start outside its bounds or a parameter that the records do not feel.
+    """
+    bounds = [(f.name, f.lower, f.upper, 1.0 / f.known_to if f.known_to else 0.0) for f in free]
+    fits = [
+        _core.fit(problem, start, bounds, weight, tolerance=1e-10, huber=huber) for start in starts
+    ]
+    best = min(fits, key=lambda fit: fit.cost)
+    jacobian = best.jacobian * weight[:, None]
+    weighted = best.residual * weight
+    judged = weighted if counted is None else weighted[counted]
+    if huber > 0.0:
+        judged = np.clip(judged, -huber, huber)
+    colour = colour_of(judged, len(free))
+    covariance, inflation = _covariance(jacobian, free, best.at_bound, colour)
+    level = LIMIT_95 * max(colour.variance, 1e-300)
+    higher = {round(fit.cost / level) for fit in fits if fit.cost > best.cost + level}
+    return Estimate(
+        problem=problem,
+        start=starts[0],
+        free=tuple(free),
+        weight=weight,
+        huber=huber,
+        params=best.params,
+        value=np.array([best.params[f.name] for f in free]),
+        covariance=covariance,
+        inflation=inflation,
+        scale=float(np.sqrt(colour.variance)),
+        colour=colour,
+        residual=best.residual,
+        jacobian=best.jacobian,
+        cost=best.cost,
+        condition=best.condition,
+        at_bound=tuple(best.at_bound),
+        converged=best.converged,
+        iterations=best.iterations,
+        starts=len(fits),
+        minima=1 + len(higher),
+    )
+
+
+def _covariance(
+    jacobian: Array, free: Sequence[Free], at_bound: Sequence[bool], colour: Colour
+) -> tuple[Array, Array]:
+    """Covariance (k, k) and inflation (k,), parameters at a bound taken as fixed."""
+    k = len(free)
+    inside = np.flatnonzero(~np.array(at_bound, dtype=bool))
+    prior = np.diag([1.0 / free[i].known_to ** 2 if free[i].known_to else 0.0 for i in inside])
+    columns = jacobian[:, inside]
+    length = np.sqrt(np.maximum(np.sum(columns**2, axis=0) + np.diag(prior), 1e-300))
+    columns, prior = columns / length, prior / np.outer(length, length)
+    bread = np.linalg.pinv(columns.T @ columns + prior, rcond=1e-14)
+    white = bread @ (colour.variance * (columns.T @ columns) + prior) @ bread
+    coloured = bread @ (coloured_meat(columns, colour) + prior) @ bread
+    covariance = np.full((k, k), np.nan)
+    covariance[np.ix_(inside, inside)] = coloured / np.outer(length, length)
+    inflation = np.ones(k)
+    inflation[inside] = np.diag(coloured) / np.maximum(np.diag(white), 1e-300)
+    return covariance, inflation
+
+
+def sensitivity(found: Estimate, names: Sequence[str]) -> Array:
+    """d(estimate) / d(known parameter), (k, names): by how much a wrong one would shift the fit."""
+    _, columns = found.problem.evaluate(found.params, list(names))
+    weighted = found.jacobian * found.weight[:, None]
+    inside = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
+    length = np.maximum(np.linalg.norm(weighted[:, inside], axis=0), 1e-300)
+    j = weighted[:, inside] / length
+    prior = np.array([1.0 / f.known_to**2 if f.known_to else 0.0 for f in found.free])[inside]
+    normal = j.T @ j + np.diag(prior / length**2)
+    shift = -np.linalg.pinv(normal, rcond=1e-14) @ (j.T @ (columns * found.weight[:, None]))
+    out = np.zeros((len(found.free), len(names)))
+    out[inside] = shift / length[:, None]
+    return out
+
+
+# ---- profile likelihood ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The cost over one parameter with all others fitted again."""
+
+    name: str
+    value: Array
+    """(points,), rising"""
+    rise: Array
+    """(points,): cost above its minimum, in units in which LIMIT_95 is the 95 percent limit."""
+    lower: float
+    upper: float
+    closed_below: bool
+    closed_above: bool
+    """False where the parameter's bound was reached first: any value up to there fits."""
+
+    @property
+    def closed(self) -> bool:
+        """Whether the data alone hold the parameter on both sides."""
+        return self.closed_below and self.closed_above
+
+    @property
+    def half_width(self) -> float:
+        """Half of the interval."""
+        return 0.5 * (self.upper - self.lower)
+
+
+def profile(found: Estimate, name: str) -> Profile:
+    """The 95 percent interval of one parameter by its profile likelihood, coloured residuals and all."""
+    i = found.index(name)
+    unit = max(found.colour.variance, 1e-300) * float(found.inflation[i])
+    total = _total_cost(found, found.params)
+    others = [f for f in found.free if f.name != name]
+    bounds = [(f.name, f.lower, f.upper, 1.0 / f.known_to if f.known_to else 0.0) for f in others]
+
+    def rise_at(value: float, near: _core.Params) -> tuple[float, _core.Params]:
+        moved = near.copy()
+        moved[name] = value
+        for f in others:  # the pull is towards the start of the whole fit
+            if f.known_to:
+                moved[f.name] = found.start[f.name]
+        fit = _core.fit(
+            found.problem, moved, bounds, found.weight, tolerance=1e-7, huber=found.huber
+        )
+        return (_total_cost(found, fit.params) - total) / unit, fit.params
+
+    points = [(float(found.value[i]), 0.0)]
+    ends = [
+        _walk(points, rise_at, found, i, sign, bound)
+        for sign, bound in ((-1.0, found.free[i].lower), (1.0, found.free[i].upper))
+    ]
+    points.sort()
+    value, rise = np.array(points).T
+    (lower, below), (upper, above) = ends
+    return Profile(name, value, np.maximum(rise, 0.0), lower, upper, below, above)
+
+
+def _total_cost(found: Estimate, params: _core.Params) -> float:
+    """What the fit minimises, pulls included."""
+    residual, _ = found.problem.evaluate(params)
+    size = np.abs(residual * found.weight)
+    if found.huber > 0.0:
+        soft = size > found.huber
+        size = np.where(soft, np.sqrt(np.maximum(found.huber * (2 * size - found.huber), 0)), size)
+    pulls = [
+        (params[f.name] - found.start[f.name]) / f.known_to for f in found.free if f.known_to
+    ]
+    return float(size @ size) + float(np.sum(np.square(pulls)))
+
+
+def _walk(
+    points: list[tuple[float, float]],
+    rise_at: Callable[[float, _core.Params], tuple[float, _core.Params]],
+    found: Estimate,
+    i: int,
+    sign: float,
+    bound: float,
+) -> tuple[float, bool]:
+    """Out from the estimate until the rise passes the limit; (end of the interval, whether it did)."""
+    centre = float(found.value[i])
+    if sign * (bound - centre) <= 1e-9 * max(abs(bound), 1.0):
+        return centre, False
+    sd = float(np.sqrt(found.covariance[i, i]))
+    step = 1.5 * sd if np.isfinite(sd) and sd > 0.0 else 0.05 * abs(bound - centre)
+    inside, inside_rise, near = centre, 0.0, found.params
+    outside: tuple[float, float] | None = None
+    for _ in range(_REFITS):
+        if outside is None:
+            trial = inside + sign * step
+            trial = bound if sign * (trial - bound) > 0.0 else trial
+            step *= 2.0
+        else:  # sqrt(rise) is nearly straight
+            low, high = np.sqrt(max(inside_rise, 0.0)), np.sqrt(outside[1])
+            share = (np.sqrt(LIMIT_95) - low) / max(high - low, 1e-12)
+            trial = inside + float(np.clip(share, 0.05, 0.95)) * (outside[0] - inside)
+        rise, moved = rise_at(trial, near)
+        points.append((trial, rise))
+        if rise > LIMIT_95:
+            outside = (trial, rise)
+        else:
+            inside, inside_rise, near = trial, rise, moved
+            if trial == bound:
+                return bound, False
+        if abs(rise - LIMIT_95) < 0.15:
+            return trial, True
+    return (outside[0], True) if outside is not None else (inside, False)
+
+
+def with_start(params: _core.Params, **values: float) -> _core.Params:
+    """A copy with some parameters set."""
+    out = params.copy()
+    for name, value in values.items():
+        out[name] = value
+    return out
+
+

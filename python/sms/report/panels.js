@@ -1,0 +1,85 @@
+// Draws every figure of #plot-data: panels above each other over one axis, a choice of views. Colours: style.css.
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("plot-data").textContent);
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const touch = matchMedia("(pointer: coarse)").matches;
+  const config = { responsive: true, displaylogo: false, displayModeBar: touch ? false : "hover",
+    modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]],
+    toImageButtonOptions: { format: "png", scale: 2 } };
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const faint = { measured: 0.5 };
+
+  function axis(title, more) {
+    return Object.assign({ title: { text: title, standoff: 8 }, gridcolor: colour("grid"), linecolor: colour("line"),
+      zerolinecolor: colour("line"), tickcolor: colour("line"), automargin: true }, more);
+  }
+
+  function line(trace, number) {
+    const suffix = number ? String(number + 1) : "";
+    const out = { x: trace.x, y: trace.y, name: trace.name, mode: trace.mode, xaxis: "x", yaxis: `y${suffix}`,
+      showlegend: Boolean(trace.name) && !trace.quiet, opacity: trace.mode === "markers" ? faint[trace.colour] || 1 : 1,
+      line: { color: colour(trace.colour), width: 2, dash: trace.dash || "solid" },
+      marker: { color: colour(trace.colour), size: trace.size || 5, symbol: trace.symbol || "circle" } };
+    if (trace.error) {
+      out.error_y = { type: "data", symmetric: !trace.error_below, array: trace.error, arrayminus: trace.error_below,
+        color: colour(trace.colour), thickness: 1.2, width: 3 };
+    }
+    return out;
+  }
+
+  function map(panel) {
+    return [{ type: "heatmap", x: panel.names, y: panel.names, z: panel.values, zmin: -1, zmax: 1, xgap: 2, ygap: 2,
+      colorscale: [[0, "#d55e00"], [0.5, dark.matches ? "#2a3036" : "#f4f4f2"], [1, "#0072b2"]],
+      text: panel.values.map((row) => row.map((v) => v === null ? "at bound" : v.toFixed(2))),
+      texttemplate: "%{text}", hovertemplate: "%{y} with %{x}: %{z:.3f}<extra></extra>", colorbar: { thickness: 10 } }];
+  }
+
+  function layout(view) {
+    const out = { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+      font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
+      margin: { l: 64, r: 12, t: 12, b: 44 }, dragmode: touch ? false : "zoom",
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("quiet"), activecolor: colour("ink") },
+      hoverlabel: { bgcolor: colour("surface"), bordercolor: colour("line"), font: { color: colour("ink") } },
+      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 } };
+    if (view.names) {
+      return Object.assign(out, { xaxis: axis("", { tickangle: -30 }), yaxis: axis("", { autorange: "reversed" }) });
+    }
+    const count = view.panels.length;
+    out.xaxis = axis(view.x_title, Object.assign({ anchor: count > 1 ? `y${count}` : "y" }, view.x_log ? { type: "log" } : {}));
+    const heights = view.panels.map((panel) => panel.share || 1);
+    const sum = heights.reduce((a, b) => a + b, 0), gap = count > 1 ? 0.05 : 0;
+    let top = 1;
+    view.panels.forEach((panel, i) => {
+      const bottom = Math.max(top - heights[i] / sum * (1 - gap * (count - 1)), 0);
+      const more = { domain: [bottom, top], rangemode: panel.from_zero ? "tozero" : "normal" };
+      if (panel.log) more.type = "log";
+      if (panel.range) more.range = panel.range;
+      out[`yaxis${i ? i + 1 : ""}`] = axis(panel.title, more);
+      top = bottom - gap;
+    });
+    return out;
+  }
+
+  function draw(id, number) {
+    const view = data[id][number];
+    const traces = view.names ? map(view) : view.panels.flatMap((panel, i) => panel.traces.map((t) => line(t, i)));
+    Plotly.react(`${id}-plot`, traces, layout(view), config);
+  }
+
+  function choose(id) {
+    const place = document.getElementById(`${id}-choice`);
+    if (!place) return () => 0;
+    const select = document.createElement("select");
+    select.setAttribute("aria-label", "What is shown");
+    data[id].forEach((view, i) => select.add(new Option(view.label, i)));
+    place.append(select);
+    select.addEventListener("change", () => draw(id, Number(select.value)));
+    return () => Number(select.value);
+  }
+
+  const shown = Object.keys(data).map((id) => [id, choose(id)]);
+  const drawAll = () => shown.forEach(([id, number]) => draw(id, number()));
+  drawAll();
+  dark.addEventListener("change", drawAll);
+})();
