@@ -31,8 +31,8 @@ est::TankProblem make_tank_problem(Eigen::VectorXd time, Eigen::VectorXd pressur
                                    const std::string& heat) {
   sms::FlowTestKind kind;
   kind.law = choice<sms::FlowLaw>("law", law, {{"iso", sms::FlowLaw::iso}, {"classic", sms::FlowLaw::classic}});
-  kind.heat = choice<sms::TankHeat>("heat", heat,
-                                    {{"polytropic", sms::TankHeat::polytropic}, {"energy", sms::TankHeat::energy}});
+  kind.heat = choice<sms::ChamberLaw>(
+      "heat", heat, {{"polytropic", sms::ChamberLaw::polytropic}, {"energy", sms::ChamberLaw::energy}});
   return {{std::move(time), std::move(pressure), std::move(temperature), std::move(supply), charge}, kind};
 }
 

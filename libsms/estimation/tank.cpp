@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "estimation/jets.hpp"
+#include "sms/integrate.hpp"
 
 namespace sms {
 namespace estimation {
@@ -36,15 +37,19 @@ S outside_pressure(const Params<S>& p, const TankRecord& record, const S& time) 
                 : S(value_of(time) > record.time[0] ? record.supply[n - 1] : record.supply[0]);
 }
 
-// d/dt over the test's own clock.
+// d/dt over the test's own clock, as the core's integrators ask for it.
 template <typename S>
 struct System {
   const Params<S>& p;
   const TankRecord& record;
   FlowTestKind kind;
 
-  FlowTest<S> operator()(const FlowTest<S>& test, const S& time) const {
+  FlowTest<S> rate(const S& time, const FlowTest<S>& test) const {
     return flow_test_rate<S>(p, kind, time, test, outside_pressure<S>(p, record, time + p.opening_time));
+  }
+  sms_status operator()(const S& time, const FlowTest<S>& test, FlowTest<S>& rate_of_test) const {
+    rate_of_test = rate(time, test);
+    return SMS_OK;
   }
 };
 
@@ -55,20 +60,6 @@ struct Node {
   FlowTest<S> test;
   FlowTest<S> rate;
 };
-
-template <typename S>
-Node<S> next_node(const System<S>& system, const Node<S>& from, const S& dt) {
-  const S half = S(0.5) * dt;
-  const FlowTest<S> k2 = system(from.test + half * from.rate, from.time + half);
-  const FlowTest<S> k3 = system(from.test + half * k2, from.time + half);
-  const FlowTest<S> k4 = system(from.test + dt * k3, from.time + dt);
-  const S sixth = dt / S(6), third = dt / S(3);
-  Node<S> to = from;
-  to.time = from.time + dt;
-  to.test = from.test + sixth * (from.rate + k4) + third * (k2 + k3);
-  to.rate = system(to.test, to.time);
-  return to;
-}
 
 template <typename S>
 bool has_settled(const Node<S>& node, double dt) {
@@ -84,8 +75,12 @@ template <typename S>
 FlowTest<S> between(const Node<S>& a, const Node<S>& b, const S& time) {
   const S h = b.time - a.time;
   const S u = (time - a.time) / h, w = S(1) - u;
-  return (w * w * (S(1) + S(2) * u)) * a.test + (u * u * (S(1) + S(2) * w)) * b.test + (h * u * w * w) * a.rate +
-         (-(h * u * u * w)) * b.rate;
+  const S at_a = w * w * (S(1) + S(2) * u), at_b = u * u * (S(1) + S(2) * w);
+  const S rate_a = h * u * w * w, rate_b = -(h * u * u * w);
+  FlowTest<S> test;
+  vector_of(test) =
+      at_a * vector_of(a.test) + at_b * vector_of(b.test) + rate_a * vector_of(a.rate) + rate_b * vector_of(b.rate);
+  return test;
 }
 
 // Runs through the test once, while its reader asks for later and later times.
@@ -95,7 +90,7 @@ class Run {
   Run(const Params<S>& p, const TankRecord& record, FlowTestKind kind, double step)
       : p_(p), record_(record), system_{p, record, kind}, step_(step) {
     const FlowTest<S> start = flow_test_start(p, kind);
-    from_ = to_ = {S(0), start, system_(start, S(0))};
+    from_ = to_ = {S(0), start, system_.rate(S(0), start)};
   }
 
   FlowTest<S> at(const S& time) {
@@ -104,7 +99,10 @@ class Run {
     }
     while (!settled_ && to_.time < time) {
       from_ = to_;
-      to_ = next_node(system_, from_, step_count_ < kOpeningSteps ? opening_step() : S(step_));
+      const S h = step_count_ < kOpeningSteps ? opening_step() : S(step_);
+      runge_kutta_step(system_, from_.time, h, to_.test);
+      to_.time += h;
+      to_.rate = system_.rate(to_.time, to_.test);
       ++step_count_;
       settled_ = record_.supply.size() == 0 && step_count_ > kOpeningSteps && has_settled(to_, step_);
     }

@@ -11,9 +11,9 @@ namespace est = sms::estimation;
 
 namespace {
 
-const sms::FlowTestKind kIso{sms::FlowLaw::iso, sms::TankHeat::polytropic};
-const sms::FlowTestKind kEnergy{sms::FlowLaw::iso, sms::TankHeat::energy};
-const sms::FlowTestKind kClassic{sms::FlowLaw::classic, sms::TankHeat::polytropic};
+const sms::FlowTestKind kIso{sms::FlowLaw::iso, sms::ChamberLaw::polytropic};
+const sms::FlowTestKind kEnergy{sms::FlowLaw::iso, sms::ChamberLaw::energy};
+const sms::FlowTestKind kClassic{sms::FlowLaw::classic, sms::ChamberLaw::polytropic};
 
 sms::Params<double> test_of(bool charge, sms_test::Random& random) {
   sms::Params<double> p;
@@ -62,7 +62,7 @@ TEST_CASE("the tank's jacobian agrees with differences, by every law, charging a
                                sms::index_of_air_temperature, sms::index_of_tank_line_resistance,
                                sms::index_of_sensor_gain_tank_pressure};
       free.push_back(charge ? sms::index_of_supply_pressure : sms::index_of_ambient_pressure);
-      if (kind.heat == sms::TankHeat::energy) {
+      if (kind.heat == sms::ChamberLaw::energy) {
         free.insert(free.end(), {sms::index_of_heat_transfer_coefficient, sms::index_of_wall_temperature,
                                  sms::index_of_thermocouple_time_constant});
       }

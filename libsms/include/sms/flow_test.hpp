@@ -21,6 +21,7 @@
 // Valid for a component whose own volume is small against the tank's.
 #pragma once
 
+#include "sms/actuator.hpp"
 #include "sms/limit.hpp"
 #include "sms/sensor.hpp"
 #include "sms/vessel.hpp"
@@ -28,33 +29,23 @@
 namespace sms {
 
 enum class FlowLaw { iso, classic };
-enum class TankHeat { polytropic, energy };
 
 struct FlowTestKind {
   FlowLaw law = FlowLaw::iso;
-  TankHeat heat = TankHeat::polytropic;
+  ChamberLaw heat = ChamberLaw::polytropic;
 };
 
 template <typename S>
 struct FlowTest {
+  using Scalar = S;
   S pressure;      // in the tank, Pa absolute
   S temperature;   // K
   S thermocouple;  // K
 };
 
 template <typename S>
-FlowTest<S> operator+(const FlowTest<S>& a, const FlowTest<S>& b) {
-  return {a.pressure + b.pressure, a.temperature + b.temperature, a.thermocouple + b.thermocouple};
-}
-
-template <typename S>
-FlowTest<S> operator*(const S& factor, const FlowTest<S>& a) {
-  return {factor * a.pressure, factor * a.temperature, factor * a.thermocouple};
-}
-
-template <typename S>
 FlowTest<S> flow_test_start(const Params<S>& p, FlowTestKind kind) {
-  const S temperature = kind.heat == TankHeat::energy ? p.wall_temperature : p.air_temperature;
+  const S temperature = kind.heat == ChamberLaw::energy ? p.wall_temperature : p.air_temperature;
   return {p.tank_initial_pressure, temperature, temperature};
 }
 
@@ -92,14 +83,8 @@ FlowTest<S> flow_test_rate(const Params<S>& p, FlowTestKind kind, const S& time,
   const Gas<S> tank = {test.pressure, test.temperature};
   ChamberFlow<S> flow = {S(0), S(0), S(0)};
   add_flow<S>(flow, flow_test_inflow(p, kind.law, time, test, outside), tank, {outside, p.air_temperature});
-  FlowTest<S> rate = {S(0), S(0), S(0)};
-  if (kind.heat == TankHeat::energy) {
-    const GasRate<S> gas = energy_rates(p, tank, tank_space(p), flow);
-    rate.pressure = gas.pressure;
-    rate.temperature = gas.temperature;
-  } else {
-    rate.pressure = polytropic_pressure_rate(p, polytropic_ratios(p), tank, tank_space(p), flow);
-  }
+  const Gas<S> gas = chamber_rate(p, kind.heat, tank, tank_space(p), flow);
+  FlowTest<S> rate = {gas.pressure, gas.temperature, S(0)};
   if (p.thermocouple_time_constant > S(0)) {
     rate.thermocouple = (test.temperature - test.thermocouple) / p.thermocouple_time_constant;
   } else {
