@@ -1,6 +1,6 @@
 // Kinematics and workspace of the mechanism, a row at a time through the C ABI: what Python gets is what C gets.
 #include "rows.hpp"
-#include "sms/rotation.hpp"
+#include "sms/links.hpp"
 
 namespace sms_python {
 namespace {
@@ -136,6 +136,24 @@ Rows stroke_margin(const Params& params, const Rows& extension) {
   return margin.array();
 }
 
+Rows carried_points(const Params& params, const Rows& pose, const Rows& at_rest) {
+  const py::ssize_t n = row_count(pose, 6), k = row_count(at_rest, 3);
+  const sms::Geometry<double> geometry = sms::make_geometry(params);
+  const double *const at = pose.data(), *const rest = at_rest.data();
+  const Output points(n, 3 * k);
+  in_blocks(n, [&](py::ssize_t begin, py::ssize_t end) {
+    for (py::ssize_t i = begin; i < end; ++i) {
+      const double* const p = at + 6 * i;
+      const sms::Pose<double> one = {p[0], p[1], p[2], p[3], p[4], p[5]};
+      for (py::ssize_t j = 0; j < k; ++j) {
+        const sms::Vec3<double> point(rest[3 * j], rest[3 * j + 1], rest[3 * j + 2]);
+        Eigen::Map<sms::Vec3<double>>(points.row(i) + 3 * j) = sms::carried_point(geometry, one, point);
+      }
+    }
+  });
+  return points.array();
+}
+
 }  // namespace
 
 void bind_kinematics(py::module_& m) {
@@ -184,6 +202,8 @@ void bind_kinematics(py::module_& m) {
         });
       },
       py::arg("params"), py::arg("pose"), "(n, 6) poses -> (n, 2) condition numbers of rods and of all links, status.");
+  m.def("carried_points", &carried_points, py::arg("params"), py::arg("pose"), py::arg("at_rest"),
+        "(n, 6) poses, (k, 3) points of the platform in the rest pose -> (n, 3 k) where they are, m, world axes.");
   m.def("stroke_margin", &stroke_margin, py::arg("params"), py::arg("extension"), "(n, 3) -> (n, 1) m.");
   m.def("rectangle_margin", &rectangle_margin, py::arg("params"), py::arg("rectangle"),
         "(n, 3) height, roll limit, pitch limit -> (n, 1) least stroke margin on the edges, m, status.");

@@ -28,6 +28,13 @@ void locate_links(const Geometry<S>& g, const Mat3<S>& rotation, const Pose<S>& 
   }
 }
 
+// Where a point of the platform is in a pose, m, world axes; `at_rest` is where it is in the rest pose.
+template <typename S>
+Vec3<S> carried_point(const Geometry<S>& g, const Pose<S>& pose, const Vec3<S>& at_rest) {
+  const Vec3<S> position(pose.x, pose.y, -pose.height);
+  return attitude(pose.roll, pose.pitch, pose.yaw).rotation * (at_rest - g.reference) + position;
+}
+
 // Lengths of all six links in a pose whose six coordinates are free: the inverse kinematics of a Gough-Stewart
 // platform, eq. 3.6.
 template <typename S>
