@@ -11,6 +11,7 @@ from sms.io.units import (
     from_si,
     interval_from_si,
     interval_to_si,
+    si_unit_of,
     split_column_name,
     to_si,
 )
@@ -108,3 +109,21 @@ def test_a_wrong_quantity_is_named_with_its_place(
 ])  # fmt: skip
 def test_column_names_carry_their_unit(name: str, expected: tuple[str, str | None]) -> None:
     assert split_column_name(name) == expected
+
+
+@pytest.mark.parametrize(
+    ("unit", "si"),
+    [
+        *(
+            ("mm", "m"),
+            ("bar", "Pa"),
+            ("deg", "rad"),
+            ("percent", "1"),
+            ("1", "1"),
+            ("deg/s", "rad/s"),
+        ),
+        *(("kHz", "Hz"), ("mV", "V"), ("g/s", "kg/s"), ("m^3/s", "meter ** 3 / second")),
+    ],
+)
+def test_the_unit_in_which_a_quantity_is_kept(unit: str, si: str) -> None:
+    assert si_unit_of(unit, "here") == si

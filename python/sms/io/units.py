@@ -21,6 +21,7 @@ _COMMON_UNITS = (
     *("s", "ms", "min", "m", "mm", "cm", "m/s", "mm/s", "Pa", "kPa", "MPa", "hPa", "bar", "mbar"),
     *("psi", "N", "kN", "mN", "lbf", "N s/m", "kg", "g", "K", "degC", "V", "mV", "deg", "rad"),
 )
+_ANGLES = ("radian", "degree", "turn", "arcminute", "arcsecond")
 _GAUGE_UNIT = re.compile(r"(m?bar|psi|[kMh]?Pa)[ _]?\(?(g|gauge)\)?", re.IGNORECASE)
 
 
@@ -99,6 +100,20 @@ def array_to_si(
     parsed = _check_dimension(unit, si_unit, where)
     converted = _registry().Quantity(values, parsed).to(_parse_unit(si_unit, where)).magnitude
     return np.asarray(converted, dtype=np.float64)
+
+
+def si_unit_of(unit: str, where: str) -> str:
+    """The unit without prefix in which a quantity of `unit` is kept: "mm" "m", "bar" "Pa"."""
+    parsed = _parse_unit(unit, where)
+    dimension = parsed.dimensionality
+    if any(word in str(parsed) for word in _ANGLES) and parsed.dimensionless:
+        return "rad"
+    for known in ("1", "s", "m", "m/s", "m/s^2", "Pa", "N", "V", "K", "kg", "kg/s"):
+        if dimension == _parse_unit(known, where).dimensionality:
+            return known
+    if dimension == _parse_unit("rad/s", where).dimensionality:
+        return "Hz" if unit.lower().endswith("hz") else "rad/s"
+    return str(_registry().Quantity(1.0, _parse_unit(unit, where)).to_base_units().units)
 
 
 def from_si(value: float, unit: str, si_unit: str, where: str) -> str:
