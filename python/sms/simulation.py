@@ -70,6 +70,14 @@ class SimulationStoppedError(_core.StatusError):
         self.run = run
 
 
+class SimulationInterruptedError(KeyboardInterrupt):
+    """Ctrl-C while a run was under way; `run` is what was computed before."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__()
+        self.run = run
+
+
 def simulate_bench(
     command: ArrayLike,
     *,
@@ -222,14 +230,18 @@ def _run(
     own_noise = np.broadcast_to(_columns("noise", noise, legs), (n, legs))
     rows = np.empty((n, len(simulation.columns)))
     done = status = 0
-    for block in _blocks(n, max(1, round(0.25 / period))):
-        part, status, count = simulation.advance(setpoint[block], own_noise[block], load[block])
-        rows[done : done + count] = part[:count]
-        done += count
-        if status:
-            break
-        if progress is not None:
-            progress(done / n)
+    interrupted = False
+    try:
+        for block in _blocks(n, max(1, round(0.25 / period))):
+            part, status, count = simulation.advance(setpoint[block], own_noise[block], load[block])
+            rows[done : done + count] = part[:count]
+            done += count
+            if status:
+                break
+            if progress is not None:
+                progress(done / n)
+    except KeyboardInterrupt:
+        interrupted = True
     run = Run(
         period * np.arange(done, dtype=np.float64),
         tuple(simulation.columns),
@@ -237,6 +249,8 @@ def _run(
         simulation.evaluations,
         simulation.steps,
     )
+    if interrupted:
+        raise SimulationInterruptedError(run)
     if status:
         raise SimulationStoppedError(
             f"the run stops at {simulation.time:.6g} s of {n * period:.6g} s: "
