@@ -1,0 +1,85 @@
+"""What `sms simulate` leaves in its folder: the record, its findings, the page; whole files only."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from sms import _core
+from sms.io import write_bytes_atomically, write_table, write_text_atomically
+from sms.report.simulation import simulation_html
+from sms.rows import Array
+from sms.scenario.findings import Findings
+from sms.scenario.load import Scenario
+from sms.scenario.record import Record
+from sms.scenario.sent import Command
+
+
+def write_run(
+    out: Path, scenario: Scenario, command: Command, record: Record, findings: Findings
+) -> list[Path]:
+    """Write the record (CSV or Parquet), run.json and report.html; a partial run says so by name.
+
+    Each file is there whole or not at all. What an earlier run of the other kind left is removed,
+    so that a folder never holds a whole and a partial run side by side. InputError when the folder
+    cannot be written.
+    """
+    stem = "run" if record.complete else "run.partial"
+    step = max(1, round(scenario.every / scenario.period))
+    written = record.every(step)
+    table = out / f"{stem}.{scenario.output.format}"
+    if scenario.output.format == "parquet":
+        write_parquet(table, written.columns())
+    else:
+        write_table(table, written.columns())
+    summary = out / f"{stem}.json"
+    write_text_atomically(
+        summary, json.dumps(summary_of(scenario, command, record, findings), indent=1) + "\n"
+    )
+    page = out / "report.html"
+    write_text_atomically(page, simulation_html(scenario, command, record, findings))
+    for other in ("run", "run.partial"):
+        for ending in ("csv", "parquet", "json"):
+            old = out / f"{other}.{ending}"
+            if old not in (table, summary):
+                old.unlink(missing_ok=True)
+    return [table, summary, page]
+
+
+def summary_of(
+    scenario: Scenario, command: Command, record: Record, findings: Findings
+) -> dict[str, Any]:
+    """For programs: what was run and what came out, SI units."""
+    return {
+        "title": scenario.title,
+        "scenario": str(scenario.path),
+        "version": _core.__version__,
+        "complete": record.complete,
+        "ended": record.ended,
+        "duration_s": float(record.time[-1]) if record.time.size else 0.0,
+        "planned_s": record.planned,
+        "parameters": dict(scenario.changed),
+        "motion": list(command.words),
+        "cuts": [
+            {
+                "limit": cut.limit,
+                "share_of_time": cut.share,
+                "largest_rad": cut.largest,
+                "at_s": cut.at,
+                "sentence": cut.sentence,
+            }
+            for cut in (command.motion.cuts if command.motion else ())
+        ],
+        **findings.to_dict(),
+    }
+
+
+def write_parquet(path: Path, columns: dict[str, Array]) -> None:
+    """Columns (n,) named "name [unit]" as Parquet."""
+    buffer = io.BytesIO()
+    pd.DataFrame(columns).to_parquet(buffer, index=False)
+    write_bytes_atomically(path, buffer.getvalue())

@@ -1,0 +1,230 @@
+"""A scenario: what is simulated, in SI units, every value checked before anything runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sms._core import Params
+from sms.io.errors import InputError
+from sms.io.rig import check_bounds, search_places
+from sms.io.schema import Table, TextOrNumber
+from sms.io.units import to_si
+from sms.kinematics import height_range
+from sms.parameters import PARAMETERS
+from sms.scenario.schema import (
+    EXCITATIONS,
+    DeckMotionTable,
+    ModelTable,
+    OutputTable,
+    ScenarioFile,
+    SeaTable,
+)
+from sms.scenario.tables import checked, known_key, read_toml, within
+
+LONGEST = 86400.0  #: s, of a run
+HIGHEST_FREQUENCY = 1e3  #: Hz, of an excitation or a band
+TOLERANCES = 1e-12, 1e-2
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One simulation, ready to run."""
+
+    path: Path
+    title: str
+    notes: str
+    plant: str  #: "platform" or "bench"
+    params: Params
+    changed: Mapping[str, float]  #: parameters other than their defaults, SI
+    model: ModelTable
+    controller: str  #: "state_feedback", "pid" or "open_loop"
+    compensated: bool  #: the controller steps over the valve's dead band
+    height: float  #: of the platform at rest, m
+    extension: float  #: of the bench's actuator at rest, m
+    load_force: float  #: on the bench's rod, N
+    duration: float | None  #: s; None: that of the motion
+    excitation: Table | None  #: one of the tables of schema.EXCITATIONS
+    deck_motion: DeckMotionTable | None
+    sea: SeaTable | None
+    output: OutputTable
+    every: float  #: s between rows of the output
+
+    @property
+    def period(self) -> float:
+        """Of the controller, s."""
+        return self.params.control_period
+
+    def where(self, table: str, key: str = "") -> str:
+        """How an error names a place of this file."""
+        return f"{self.path}, [{table}] {key}".rstrip()
+
+    def number(self, table: str, key: str, value: TextOrNumber, unit: str) -> float:
+        """A quantity of the file in SI units; InputError names the place."""
+        return to_si(value, unit, self.where(table, key))
+
+
+def load_scenario(path: Path, settings: Mapping[str, float] | None = None) -> Scenario:
+    """Read and check a scenario file.
+
+    `settings` are parameters (SI) that go before those of the file. InputError says file, table,
+    key, value and what is allowed.
+    """
+    return scenario_from(read_toml(path, "scenario"), path, settings)
+
+
+def scenario_from(
+    tables: Mapping[str, Any], path: Path, settings: Mapping[str, float] | None = None
+) -> Scenario:
+    """As `load_scenario`, from the tables themselves; `path` is what errors name."""
+    file = checked(ScenarioFile, tables, path)
+    _check_one_motion(file, path)
+    changed = {**_rig_parameters(file, path), **_parameters(file, path), **(settings or {})}
+    params = Params()
+    for name, value in changed.items():
+        params[name] = value
+    duration = file.scenario.duration
+    low, high = TOLERANCES
+    if not low <= file.model.tolerance <= high:
+        raise InputError(
+            f"{path}, [model] tolerance: {file.model.tolerance:g} is outside the allowed range, "
+            f"{low:g} to {high:g}"
+        )
+    height, extension, load_force = _start(file, params, path)
+    every = within(file.output.every, "s", 0.0, LONGEST, f"{path}, [output] every", above=True)
+    return Scenario(
+        path=path,
+        title=file.scenario.title or path.stem,
+        notes=file.scenario.notes,
+        plant=file.scenario.plant,
+        params=params,
+        changed=changed,
+        model=file.model,
+        controller=file.controller.kind,
+        compensated=file.controller.compensated,
+        height=height,
+        extension=extension,
+        load_force=load_force,
+        duration=None
+        if duration is None
+        else within(duration, "s", 0.0, LONGEST, f"{path}, [scenario] duration", above=True),
+        excitation=_excitation(file, path),
+        deck_motion=file.deck_motion,
+        sea=file.sea,
+        output=file.output,
+        every=max(every, params.control_period),
+    )
+
+
+def parameter_value(name: str, value: TextOrNumber, where: str) -> float:
+    """A parameter's value in SI, within its bounds; InputError names key, value and range."""
+    if name not in PARAMETERS:
+        raise InputError(f"{where}: there is no such parameter; {known_parameter(name)}")
+    parameter = PARAMETERS[name]
+    number = to_si(value, parameter.unit, where)
+    check_bounds(parameter, number, where)
+    return number
+
+
+def known_parameter(name: str) -> str:
+    """The remedy for an unknown parameter; all of them would be no help."""
+    remedy = known_key(name, list(PARAMETERS))
+    meant = remedy.partition("allowed are")[0]
+    return f"{meant}docs/parameters.md lists all {len(PARAMETERS)}"
+
+
+def find_file(name: str, path: Path, where: str) -> Path:
+    """A file named in a scenario: under $SMS_DATA, beside the scenario, in ../shared/data."""
+    named = Path(name).expanduser()
+    places = [named] if named.is_absolute() else [p / named for p in search_places(path)]
+    for candidate in places:
+        if candidate.is_file():
+            return candidate
+    looked = ", ".join(str(place.parent.resolve()) for place in places)
+    raise InputError(
+        f"{where}: there is no file '{name}' (looked in: {looked}); check the name, or set SMS_DATA "
+        "to the folder that holds it"
+    )
+
+
+def _check_one_motion(file: ScenarioFile, path: Path) -> None:
+    motions = {"excitation": file.excitation, "deck_motion": file.deck_motion, "sea": file.sea}
+    given = [name for name, table in motions.items() if table is not None]
+    if len(given) > 1:
+        raise InputError(f"{path}: [{given[0]}] and [{given[1]}] exclude each other; keep one")
+    if not given:
+        raise InputError(
+            f"{path}: nothing moves; add one of {', '.join(f'[{name}]' for name in motions)}"
+        )
+    if given[0] == "excitation" and file.scenario.duration is None:
+        raise InputError(f"{path}, [scenario]: the key 'duration' is missing; add \"20 s\" or so")
+    if given[0] != "excitation" and file.controller.kind == "open_loop":
+        raise InputError(
+            f"{path}, [controller] kind: 'open_loop' sends volts, a deck's motion is a pose; "
+            "allowed here are state_feedback, pid"
+        )
+    if given[0] != "excitation" and file.scenario.plant == "bench":
+        raise InputError(
+            f"{path}, [scenario] plant: 'bench' is one actuator and has no deck; write "
+            'plant = "platform", or an [excitation]'
+        )
+    if given[0] == "sea" and file.scenario.duration is None:
+        raise InputError(f"{path}, [scenario]: the key 'duration' is missing; add \"300 s\" or so")
+
+
+def _excitation(file: ScenarioFile, path: Path) -> Table | None:
+    if file.excitation is None:
+        return None
+    kind = str(file.excitation.get("kind", ""))
+    if kind not in EXCITATIONS:
+        problem = f"'{kind}' is not known" if kind else "the key 'kind' is missing"
+        where = f"{path}, [excitation] kind" if kind else f"{path}, [excitation]"
+        raise InputError(f"{where}: {problem}; {known_key(kind, list(EXCITATIONS))}")
+    # The one table on its own, named as in the file.
+    model = type("ExcitationFile", (Table,), {"__annotations__": {"excitation": EXCITATIONS[kind]}})
+    table: Table = checked(model, {"excitation": file.excitation}, path).excitation
+    return table
+
+
+def _parameters(file: ScenarioFile, path: Path) -> dict[str, float]:
+    return {
+        name: parameter_value(name, value, f"{path}, [parameters] {name}")
+        for name, value in file.parameters.items()
+    }
+
+
+def _rig_parameters(file: ScenarioFile, path: Path) -> dict[str, float]:
+    """The values under [parameters] of a rig file; its records need not be there."""
+    if file.rig is None:
+        return {}
+    rig = (path.parent / Path(file.rig.file).expanduser()).resolve()
+    entries = read_toml(rig, "rig").get("parameters", {})
+    values = {
+        name: entry.get("value") if isinstance(entry, Mapping) else entry
+        for name, entry in entries.items()
+    }
+    return {
+        name: parameter_value(name, value, f"{rig}, [parameters] {name}")
+        for name, value in values.items()
+        if value is not None
+    }
+
+
+def _start(file: ScenarioFile, params: Params, path: Path) -> tuple[float, float, float]:
+    """Height of the platform, extension of the bench's actuator (m) and its load (N), at rest."""
+    low, high = height_range(params)
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise InputError(f"{path}, [parameters]: with these the mechanism has no level pose")
+    height, extension = 0.5, 0.5 * params.stroke
+    if file.start.height is not None:
+        height = within(file.start.height, "m", low, high, f"{path}, [start] height")
+    if file.start.extension is not None:
+        where = f"{path}, [start] extension"
+        extension = within(file.start.extension, "m", 0.0, params.stroke, where)
+    load = 0.0
+    if file.start.load_force is not None:
+        load = within(file.start.load_force, "N", -1e5, 1e5, f"{path}, [start] load_force")
+    return height, extension, load
