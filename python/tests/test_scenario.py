@@ -16,6 +16,7 @@ import pytest
 import sms
 from sms.io import InputError
 from sms.report.scene import scene_of
+from sms.report.simulation import simulation_html
 from sms.scenario import command_of, findings_of, load_scenario, run_scenario
 from sms.scenario.plant import INTERRUPTED
 from sms.scenario.schema import (
@@ -131,6 +132,12 @@ frequency = "1 Hz"
     assert record.pose is None and record.extension.shape == (2001, 1)
     assert np.ptp(record.extension) > 0.01
     assert "setpoint_1 [V]" in record.columns()
+    assert (
+        "scene"
+        not in simulation_html(asked, sent, record, findings_of(asked, sent, record))
+        .partition("plot-data")[2]
+        .partition("</script>")[0]
+    )
 
 
 def test_a_loop_that_oscillates_on_its_own_is_called_so(tmp_path: Path) -> None:

@@ -45,6 +45,7 @@ def command_of(scenario: Scenario) -> Command:
         return _deck(scenario, scenario.deck_motion)
     if scenario.sea is not None:
         return _sea(scenario, scenario.sea)
+    assert scenario.excitation is not None  # one of the three is there: load.py
     return excited(scenario, scenario.excitation)
 
 

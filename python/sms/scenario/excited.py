@@ -6,22 +6,22 @@ import numpy as np
 
 from sms._core import OutOfWorkspaceError
 from sms.io.errors import InputError
-from sms.io.schema import Table, TextOrNumber
+from sms.io.schema import TextOrNumber
 from sms.kinematics import inverse_kinematics
 from sms.motion.excitation import aprbs, chirp, sine, steps
 from sms.rows import Array
 from sms.scenario.load import HIGHEST_FREQUENCY, LONGEST, Scenario
-from sms.scenario.schema import AprbsTable, ChirpTable, SineTable, StepsTable
+from sms.scenario.schema import AprbsTable, ChirpTable, ExcitationTable, SineTable, StepsTable
 from sms.scenario.sent import Command
 from sms.scenario.tables import within
 
 
-def excited(scenario: Scenario, table: Table | None) -> Command:
+def excited(scenario: Scenario, table: ExcitationTable) -> Command:
     """The command of [excitation]. InputError when it leaves the stroke or the valve's 0 to 10 V."""
     assert scenario.duration is not None
     count = round(scenario.duration / scenario.period) + 1
     time: Array = scenario.period * np.arange(float(count))
-    axis = getattr(table, "axis", "heave")
+    axis: str = table.axis
     if scenario.plant == "bench" or scenario.controller == "open_loop":
         if axis not in ("actuators", "heave"):
             raise InputError(
@@ -34,7 +34,7 @@ def excited(scenario: Scenario, table: Table | None) -> Command:
     return _one_axis(scenario, table, time, axis)
 
 
-def _each_actuator(scenario: Scenario, table: Table | None, time: Array) -> Command:
+def _each_actuator(scenario: Scenario, table: ExcitationTable, time: Array) -> Command:
     """Volts, or extensions about the start."""
     unit = "V" if scenario.controller == "open_loop" else "m"
     width = 1 if scenario.plant == "bench" else 3
@@ -50,7 +50,7 @@ def _each_actuator(scenario: Scenario, table: Table | None, time: Array) -> Comm
     return Command(time, values, unit, None, None, words)
 
 
-def _one_axis(scenario: Scenario, table: Table | None, time: Array, axis: str) -> Command:
+def _one_axis(scenario: Scenario, table: ExcitationTable, time: Array, axis: str) -> Command:
     unit = "m" if axis == "heave" else "rad"
     (amplitude,) = _amplitudes(scenario, table, unit, 1)
     pose = np.zeros((time.size, 3))
@@ -96,9 +96,9 @@ def _check_stroke(scenario: Scenario, time: Array, extension: Array) -> None:
         )
 
 
-def _amplitudes(scenario: Scenario, table: Table | None, unit: str, width: int) -> list[float]:
+def _amplitudes(scenario: Scenario, table: ExcitationTable, unit: str, width: int) -> list[float]:
     """One for each actuator, in SI; a single one stands for all."""
-    given: TextOrNumber | list[str] = getattr(table, "amplitude")  # noqa: B009 (of any excitation)
+    given = table.amplitude
     where = scenario.where("excitation", "amplitude")
     listed = given if isinstance(given, list) else [given] * width
     if len(listed) != width:
@@ -110,7 +110,7 @@ def _amplitudes(scenario: Scenario, table: Table | None, unit: str, width: int) 
 
 
 def _signal(
-    scenario: Scenario, table: Table | None, time: Array, amplitude: float, unit: str
+    scenario: Scenario, table: ExcitationTable, time: Array, amplitude: float, unit: str
 ) -> Array:
     """The excitation from its delay on; before, what it has at its own time 0."""
 
@@ -121,7 +121,7 @@ def _signal(
         where = scenario.where("excitation", key)
         return within(value, "s", 0.0, LONGEST, where, above=key != "delay")
 
-    delay = seconds("delay", getattr(table, "delay", "0 s"))
+    delay = seconds("delay", table.delay)
     late = np.maximum(time - delay, 0.0)
     if isinstance(table, SineTable):
         offset = 0.0
@@ -145,8 +145,8 @@ def _signal(
     return np.where(time < delay, 0.0, values)
 
 
-def _words(table: Table | None) -> str:
-    values = {k: v for k, v in (table.model_dump() if table else {}).items() if v is not None}
+def _words(table: ExcitationTable) -> str:
+    values = {k: v for k, v in table.model_dump().items() if v is not None}
     kind = values.pop("kind", "")
     values.pop("axis", None)
     return f"{kind} with " + ", ".join(f"{key} {value}" for key, value in values.items())

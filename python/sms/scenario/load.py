@@ -18,6 +18,7 @@ from sms.parameters import PARAMETERS
 from sms.scenario.schema import (
     EXCITATIONS,
     DeckMotionTable,
+    ExcitationTable,
     ModelTable,
     OutputTable,
     ScenarioFile,
@@ -47,7 +48,7 @@ class Scenario:
     extension: float  #: of the bench's actuator at rest, m
     load_force: float  #: on the bench's rod, N
     duration: float | None  #: s; None: that of the motion
-    excitation: Table | None  #: one of the tables of schema.EXCITATIONS
+    excitation: ExcitationTable | None
     deck_motion: DeckMotionTable | None
     sea: SeaTable | None
     output: OutputTable
@@ -175,7 +176,7 @@ def _check_one_motion(file: ScenarioFile, path: Path) -> None:
         raise InputError(f"{path}, [scenario]: the key 'duration' is missing; add \"300 s\" or so")
 
 
-def _excitation(file: ScenarioFile, path: Path) -> Table | None:
+def _excitation(file: ScenarioFile, path: Path) -> ExcitationTable | None:
     if file.excitation is None:
         return None
     kind = str(file.excitation.get("kind", ""))
@@ -185,7 +186,7 @@ def _excitation(file: ScenarioFile, path: Path) -> Table | None:
         raise InputError(f"{where}: {problem}; {known_key(kind, list(EXCITATIONS))}")
     # The one table on its own, named as in the file.
     model = type("ExcitationFile", (Table,), {"__annotations__": {"excitation": EXCITATIONS[kind]}})
-    table: Table = checked(model, {"excitation": file.excitation}, path).excitation
+    table: ExcitationTable = checked(model, {"excitation": file.excitation}, path).excitation
     return table
 
 

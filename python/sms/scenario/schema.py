@@ -54,53 +54,49 @@ class StartTable(Table):
     load_force: TextOrNumber | None = None
 
 
-class SineTable(Table):
+class ExcitationTable(Table):
+    """What every [excitation] has."""
+
+    axis: Axis = "heave"
+    amplitude: TextOrNumber | list[str]
+    delay: TextOrNumber = "0 s"
+
+
+class SineTable(ExcitationTable):
     """[excitation] kind = "sine"."""
 
     kind: Literal["sine"]
-    axis: Axis = "heave"
-    amplitude: TextOrNumber | list[str]
     frequency: TextOrNumber
     offset: TextOrNumber | None = None
-    delay: TextOrNumber = "0 s"
 
 
-class ChirpTable(Table):
+class ChirpTable(ExcitationTable):
     """[excitation] kind = "chirp" (eq. 7.3)."""
 
     kind: Literal["chirp"]
-    axis: Axis = "heave"
-    amplitude: TextOrNumber | list[str]
     first: TextOrNumber
     last: TextOrNumber
     sweep: TextOrNumber | None = None
-    delay: TextOrNumber = "0 s"
 
 
-class AprbsTable(Table):
+class AprbsTable(ExcitationTable):
     """[excitation] kind = "aprbs"."""
 
     kind: Literal["aprbs"]
-    axis: Axis = "heave"
-    amplitude: TextOrNumber | list[str]
     shortest: TextOrNumber
     longest: TextOrNumber
     seed: int = Field(default=1, ge=0)
-    delay: TextOrNumber = "0 s"
 
 
-class StepsTable(Table):
+class StepsTable(ExcitationTable):
     """[excitation] kind = "steps"."""
 
     kind: Literal["steps"]
-    axis: Axis = "heave"
-    amplitude: TextOrNumber | list[str]
     levels: list[float] = Field(min_length=1)
     hold: TextOrNumber
-    delay: TextOrNumber = "0 s"
 
 
-EXCITATIONS: dict[str, type[Table]] = {
+EXCITATIONS: dict[str, type[ExcitationTable]] = {
     "sine": SineTable,
     "chirp": ChirpTable,
     "aprbs": AprbsTable,

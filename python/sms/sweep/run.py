@@ -13,6 +13,7 @@ import os
 import signal
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -72,7 +73,12 @@ def run_sweep(
     Raises: InputError.
     """
     tell = progress or (lambda text, share: None)
-    out.mkdir(parents=True, exist_ok=True)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise InputError(
+            f"{out}: cannot be made ({problem.strerror}); choose another output folder"
+        ) from None
     done = _resumed(sweep, out / PARTIAL)
     left = [variant for variant in range(len(sweep.values)) if variant not in done]
     count = len(sweep.values)
@@ -157,21 +163,16 @@ def _on_cores(
     waiting: dict[Any, int] = {}
     ahead = iter(variants)
     try:
-        for variant in _next_ones(ahead, _AHEAD):
+        for variant in islice(ahead, _AHEAD):
             waiting[_submit(pool, sweep, variant)] = variant
         while waiting:
             future = next(as_completed(waiting))
             variant = waiting.pop(future)
             yield variant, future.result()
-            for following in _next_ones(ahead, 1):
+            for following in islice(ahead, 1):
                 waiting[_submit(pool, sweep, following)] = following
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _next_ones(values: Iterator[int], count: int) -> list[int]:
-    """The next `count` values, or what is left."""
-    return [value for _, value in zip(range(count), values, strict=False)]
 
 
 def _submit(pool: ProcessPoolExecutor, sweep: Sweep, variant: int) -> Any:
