@@ -20,7 +20,7 @@
 #include <cstring>
 #include <limits>
 
-#include "sms/params.hpp"
+#include "sms/frame.h"
 
 namespace sms {
 
@@ -29,11 +29,7 @@ using Long = std::uint_least32_t;  // a time in ms, a hash, the bits of a float
 
 enum { octets_per_frame = 8 };
 
-struct Frame {
-  Word identifier;
-  Word length;  // octets; every frame of this bus has 8
-  Word octet[octets_per_frame];
-};
+using Frame = sms_frame;  // every frame of this bus has 8 octets
 
 // ---- bits ----
 
