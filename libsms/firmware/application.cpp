@@ -70,7 +70,7 @@ void watch_modes(Application& app) {
     enter(app, Mode::fault, Reason::fault);
   }
   const bool by_host = app.link.session != nobody && app.link.session != console_session;
-  if (by_host && app.now - app.link.heartbeat > Long(host_timeout)) {
+  if (by_host && app.now - app.link.heard > Long(host_timeout)) {
     give_up_control(app);
     set(app.faults, Fault::host_gone, true);
     if (app.mode == Mode::tracking || app.mode == Mode::excitation) {

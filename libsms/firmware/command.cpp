@@ -37,7 +37,6 @@ void heartbeat(Application& app, const frame::HostHeartbeat& s) {
     take_control_by(app, Word(s.session));
     check_alive(app.link, 1, Word(s.alive), app.now);
   }
-  app.link.heartbeat = app.now;
 }
 
 Frame confirmation(Operation operation, ParameterResult result, Long alive, Long session, Long index, float value) {

@@ -11,8 +11,9 @@ enum {
   nobody = 0,
   console_session = 15,
   largest_step = 4,         // of an alive counter: three frames in a row may get lost
+  synchronise_anew = 50,    // ms without an accepted frame of that identifier, then two in order will do
   synchronise_after = 500,  // ms without an accepted frame of that identifier
-  host_timeout = 300,       // ms without a heartbeat
+  host_timeout = 300,       // ms without an accepted frame
   setpoint_timeout = 100,   // ms without a set-point
   command_identifiers = 10
 };
@@ -28,8 +29,8 @@ struct Alive {
 
 struct CommandLink {
   Word challenge;
-  Word session;    // in control
-  Long heartbeat;  // ms, of the last valid one
+  Word session;  // in control
+  Long heard;    // ms, its last accepted frame
   Alive alive[command_identifiers];
   // counters since reset, of 16 bits
   Word lost, corrupted, out_of_sequence, refused;
@@ -79,8 +80,9 @@ inline bool check_alive(CommandLink& link, int number, Word alive, Long now) {
   const Word step = Word((alive - a.last) & 0xFu);
   const Word from_candidate = Word((alive - a.candidate) & 0xFu);
   const bool in_order = step >= 1 && step <= largest_step;
-  const bool anew = !a.known || now - a.when > Long(synchronise_after) ||
-                    (a.doubtful && from_candidate >= 1 && from_candidate <= largest_step);
+  const bool anew =
+      !a.known || now - a.when > Long(synchronise_after) ||
+      (a.doubtful && now - a.when > Long(synchronise_anew) && from_candidate >= 1 && from_candidate <= largest_step);
   if (!in_order && !anew) {
     a.doubtful = true;
     a.candidate = alive;
@@ -89,13 +91,14 @@ inline bool check_alive(CommandLink& link, int number, Word alive, Long now) {
   }
   link.lost = Word(link.lost + (in_order && a.known ? step - 1 : 0));
   a = {true, false, alive, alive, now};
+  link.heard = now;
   return true;
 }
 
 // Somebody takes control: all counters start anew.
 inline void take_control(CommandLink& link, Word session, Long now) {
   link.session = session;
-  link.heartbeat = now;
+  link.heard = now;
   for (Alive& a : link.alive) {
     a = {false, false, 0, 0, now};
   }

@@ -6,7 +6,8 @@
 //
 // Stuck: while a command lets air in, something has to change. When extension and pressures both stand still the valve
 // does not move; when only the extension does, the sensor. A piston that for the whole time runs against the command
-// has a valve that is stuck open. At the ends of the stroke nothing is concluded.
+// has a valve that is stuck open. A piston that rests on an end of its stroke is given the time to fill: there only
+// standing pressures tell, and nothing does while the command holds it there.
 #pragma once
 
 #include "faults.hpp"
@@ -95,8 +96,9 @@ inline void watch_stuck(const Parameters& p, const Sensed& s, int leg, float vol
   using std::abs;
   StuckWatch& w = state.watch;
   const float x = s.extension[leg], lower = s.pressure_lower[leg], upper = s.pressure_upper[leg];
-  const bool at_end = x < p.settings.stroke_margin || x > p.machine.stroke - p.settings.stroke_margin;
-  if (at_end || !(abs(voltage) > p.settings.stuck_command)) {
+  const bool low = x<p.settings.stroke_margin, high = x> p.machine.stroke - p.settings.stroke_margin;
+  const bool against_end = (low && voltage < 0.0f) || (high && voltage > 0.0f);
+  if (against_end || !(abs(voltage) > p.settings.stuck_command)) {
     w.watching = false;
     return;
   }
@@ -115,8 +117,10 @@ inline void watch_stuck(const Parameters& p, const Sensed& s, int leg, float vol
   const bool air_moves = w.pressure_most[0] - w.pressure_least[0] > p.settings.stuck_pressure ||
                          w.pressure_most[1] - w.pressure_least[1] > p.settings.stuck_pressure;
   const float run = w.upwards ? w.first - x : x - w.first;  // against the command
-  if (still) {
-    raise(faults, of_leg(air_moves ? Fault::sensor_stuck_1 : Fault::valve_stuck_1, leg));
+  if (still && !air_moves) {
+    raise(faults, of_leg(Fault::valve_stuck_1, leg));
+  } else if (still && !low && !high) {
+    raise(faults, of_leg(Fault::sensor_stuck_1, leg));
   } else if (run > 10.0f * two_counts && run > 0.9f * (w.most - w.least)) {
     raise(faults, of_leg(Fault::valve_stuck_1, leg));
   }
