@@ -100,12 +100,19 @@ void log_faults(Application& app) {
 
 // ---- set-points ----
 
+float on_the_way(const Application& app, int leg) {
+  const Target& t = app.target;
+  const Long passed = app.now - t.when;
+  const float share = passed < Long(t.interval) ? float(passed) / float(t.interval) : 1.0f;
+  return t.from[leg] + share * (t.extension[leg] - t.from[leg]);
+}
+
 void resolve_setpoint(Application& app) {
   Target& t = app.target;
-  Vec3<float> extension(t.extension[0], t.extension[1], t.extension[2]);
+  Vec3<float> extension(t.wanted[0], t.wanted[1], t.wanted[2]);
   if (t.attitude_waiting) {
     t.attitude_waiting = false;
-    const Vec3<float> q(t.attitude[0], t.attitude[1], t.attitude[2]);
+    const Vec3<float> q = extension;
     Convergence<float> convergence;
     const sms_status status =
         inverse_kinematics(app.derived.geometry, q, app.target_pose, app.target_pose, extension, convergence);
@@ -114,11 +121,15 @@ void resolve_setpoint(Application& app) {
   if (t.result == SetpointResult::accepted) {
     const SetpointLimits<float>& limits = app.derived.leg.limits;
     for (int i = 0; i < SMS_LEGS; ++i) {
+      t.from[i] = on_the_way(app, i);
+    }
+    for (int i = 0; i < SMS_LEGS; ++i) {
       t.extension[i] = limited<float>(extension(i), limits.lower, limits.upper);
       if (t.extension[i] < extension(i) || t.extension[i] > extension(i)) {
         t.result = SetpointResult::limited;
       }
     }
+    t.interval = Word(t.fresh && app.now > t.when ? app.now - t.when : 1u);  // at most setpoint_timeout
     t.fresh = true;
     t.when = app.now;
     set(app.faults, Fault::setpoint_timeout, false);
@@ -163,7 +174,7 @@ Drive drive_of(const Application& app) {
 
 float goal_of(const Application& app, int leg, float time) {
   if (app.mode == Mode::tracking) {
-    return app.target.extension[leg];
+    return on_the_way(app, leg);
   }
   const float level = app.derived.level_extension[leg];
   return app.phase == TestPhase::excite ? level + excitation_at(app.derived.excitation, leg, time) : level;
@@ -176,11 +187,15 @@ float command_of(Application& app, int i, const SetpointLimits<float>& limits, f
   const float extension = app.sensed.extension[i];
   if (app.drive != Drive::closed_loop) {
     restart_setpoint(s, leg, extension);
+    app.goal[i] = extension;
     law_step(s, app.law, leg, extension);
     const float excitation = app.drive == Drive::open_loop ? excitation_at(app.derived.excitation, i, time) : 0.0f;
     return limited<float>(s.centre + excitation, 0.0f, 2.0f * command_limit<float>());
   }
-  const SetpointLimited by = setpoint_step(limits, leg.setpoint, goal_of(app, i, time));
+  const float goal = goal_of(app, i, time), moving = (goal - app.goal[i]) / limits.period;
+  app.goal[i] = goal;
+  const SetpointLimited by =
+      setpoint_step(limits, leg.setpoint, goal, limited<float>(moving, -limits.rate, limits.rate));
   app.limited = {app.limited.range || by.range, app.limited.rate || by.rate,
                  app.limited.acceleration || by.acceleration};
   return valve_command(s.dead_band, s.centre, law_step(s, app.law, leg, extension));
@@ -343,8 +358,8 @@ void take_extension_setpoint(Application& app, const float (&extension)[SMS_LEGS
   t.session = session;
   t.waiting = true;
   t.attitude_waiting = false;
-  for (int i = 0; whole && i < SMS_LEGS; ++i) {
-    t.extension[i] = extension[i];
+  for (int i = 0; i < SMS_LEGS; ++i) {
+    t.wanted[i] = extension[i];
   }
 }
 
@@ -356,7 +371,7 @@ void take_attitude_setpoint(Application& app, const float (&attitude)[3], Word a
   t.session = session;
   t.waiting = true;
   for (int i = 0; i < 3; ++i) {
-    t.attitude[i] = attitude[i];
+    t.wanted[i] = attitude[i];
   }
 }
 
@@ -390,6 +405,8 @@ void start(Application& app, ResetCause cause, Word seed) {
   app.link.challenge = Word(seed & 0xFFu);
   for (int i = 0; i < SMS_LEGS; ++i) {
     app.target.extension[i] = app.derived.level_extension[i];
+    app.target.from[i] = app.derived.level_extension[i];
+    app.goal[i] = app.derived.level_extension[i];
     app.leg[i].command = app.derived.leg.centre;
   }
   if (cause == ResetCause::watchdog) {

@@ -46,10 +46,13 @@ sms_status derive(const Parameters& p, Derived& derived);
 // What the valves are driven by.
 enum class Drive { centre, open_loop, closed_loop };
 
-// Set-points as they come in, to be worked on once a period.
+// Set-points as they come in, to be worked on once a period. They are joined by straight lines: the way to a new one
+// takes as long as it was waited for.
 struct Target {
   float extension[SMS_LEGS];  // m, within the stroke
-  float attitude[3];          // roll, pitch, height as received
+  float from[SMS_LEGS];       // m, where the way to it began
+  Word interval;              // ms that it takes
+  float wanted[3];            // as received: roll, pitch, height, or three extensions
   bool attitude_waiting;      // for its inverse kinematics
   bool waiting;               // for the answer
   bool fresh;                 // one came within the time-out
@@ -73,6 +76,7 @@ struct Application {
   Sensing sensing;
   Sensed sensed;
   Leg leg[SMS_LEGS];
+  float goal[SMS_LEGS];  // of the last period, m
   Target target;
   Pose<float> target_pose;  // of the last set-point: where the next search starts
   Pose<float> pose;         // of the platform, by forward kinematics

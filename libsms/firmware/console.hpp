@@ -5,7 +5,7 @@
 // the star. Unknown or malformed lines are answered, and change nothing.
 #pragma once
 
-#include "sms/protocol.hpp"
+#include "text.hpp"
 
 namespace sms {
 namespace firmware {
@@ -16,11 +16,12 @@ struct Console {
   char line[console_line];
   Word length;
   bool too_long;
-  char waiting[console_waiting];  // a ring of characters to be sent
-  Word first, count;
-  const char* text;  // in the flash, sent after the ring
-  Word repeat;       // ms between lines of telemetry, 0: none
-  Word countdown;    // ms
+  TextRing<console_waiting> waiting;
+  const char* help;  // what is left of it, in the flash
+  Long log_from;     // entries of the log still to be listed
+  Long log_to;
+  Word repeat;     // ms between lines of state, 0: none
+  Word countdown;  // ms
 };
 
 }  // namespace firmware

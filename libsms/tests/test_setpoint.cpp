@@ -29,7 +29,7 @@ TEST_CASE("setpoint: range, rate and acceleration hold, whatever the target does
     for (int k = 0; k < 500; ++k) {
       if (random.uniform(0.0, 1.0) < 0.05) target = random.uniform(limits.lower - 1.0, limits.upper + 1.0);
       const sms::Setpoint<double> before = state;
-      sms::setpoint_step(limits, state, target);
+      sms::setpoint_step(limits, state, target, random.uniform(-2.0, 2.0));
       REQUIRE(state.position <= limits.upper + kRounding);
       REQUIRE(state.position >= limits.lower - kRounding);
       REQUIRE(std::abs(state.rate) <= limits.rate + kRounding);
@@ -46,7 +46,7 @@ TEST_CASE("setpoint: the same in float, up to its rounding") {
   for (int k = 0; k < 20 * sms_test::count; ++k) {
     if (random.uniform(0.0, 1.0) < 0.01) target = float(random.uniform(-0.2, 0.6));
     const float before = state.rate;
-    sms::setpoint_step(limits, state, target);
+    sms::setpoint_step(limits, state, target, float(random.uniform(-2.0, 2.0)));
     REQUIRE(state.position <= limits.upper + 1e-6f);
     REQUIRE(state.position >= limits.lower - 1e-6f);
     REQUIRE(std::abs(state.rate) <= limits.rate);
@@ -65,27 +65,39 @@ TEST_CASE("setpoint: a target in range is reached from below, and then held") {
     const double time = distance / limits.rate + limits.rate / limits.acceleration +
                         2.0 * std::sqrt(distance / limits.acceleration) + 3.0 * limits.period;
     for (int k = 0; k < int(std::ceil(time / limits.period)); ++k) {
-      sms::setpoint_step(limits, state, to);
+      sms::setpoint_step(limits, state, to, 0.0);
       REQUIRE((state.position - to) * (from - to) >= -kRounding);  // never passed over
     }
     CHECK(state.position == doctest::Approx(to).epsilon(1e-9));
-    const sms::SetpointLimited idle = sms::setpoint_step(limits, state, to);
+    const sms::SetpointLimited idle = sms::setpoint_step(limits, state, to, 0.0);
     CHECK(std::abs(state.rate) <= 2.0 * limits.acceleration * limits.period);
     CHECK_FALSE(idle.range);
     CHECK_FALSE(idle.rate);
   }
 }
 
+TEST_CASE("setpoint: a moving target within the limits is followed without lag") {
+  const Limits limits = {0.0, 0.4, 1.0, 8.0, 1e-3};
+  sms::Setpoint<double> state = {0.2, 0.0};
+  double before = 0.2;
+  for (int k = 1; k < 5000; ++k) {
+    const double target = 0.2 + 0.15 * std::sin(2 * M_PI * 1e-3 * k);  // 0.94 m/s, 5.9 m/s^2
+    sms::setpoint_step(limits, state, target, (target - before) / limits.period);
+    before = target;
+    if (k > 2000) REQUIRE(state.position == doctest::Approx(target).epsilon(1e-9));  // it starts at 0.94 m/s
+  }
+}
+
 TEST_CASE("setpoint: what kept it back is said") {
   const Limits limits = {0.0, 0.4, 0.1, 1.0, 1e-3};
   sms::Setpoint<double> state = {0.2, 0.0};
-  CHECK(sms::setpoint_step(limits, state, 0.5).range);
+  CHECK(sms::setpoint_step(limits, state, 0.5, 0.0).range);
   state = {0.2, 0.1};
-  CHECK(sms::setpoint_step(limits, state, 0.4).rate);
+  CHECK(sms::setpoint_step(limits, state, 0.4, 0.0).rate);
   state = {0.2, 0.0};
-  const sms::SetpointLimited at_rest = sms::setpoint_step(limits, state, 0.2);
+  const sms::SetpointLimited at_rest = sms::setpoint_step(limits, state, 0.2, 0.0);
   CHECK_FALSE((at_rest.range || at_rest.rate || at_rest.acceleration));
-  CHECK(sms::setpoint_step(limits, state, 0.25).acceleration);
+  CHECK(sms::setpoint_step(limits, state, 0.25, 0.0).acceleration);
 }
 
 TEST_CASE("setpoint: from outside the range it comes in and stays") {
@@ -93,7 +105,7 @@ TEST_CASE("setpoint: from outside the range it comes in and stays") {
   sms::Setpoint<double> state = {-0.02, 0.0};
   for (int k = 0; k < 3000; ++k) {
     const double before = state.position;
-    sms::setpoint_step(limits, state, 0.0);
+    sms::setpoint_step(limits, state, 0.0, 0.0);
     CHECK(state.position >= before - kRounding);
   }
   CHECK(state.position == doctest::Approx(0.01));
