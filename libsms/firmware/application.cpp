@@ -113,9 +113,7 @@ void resolve_setpoint(Application& app) {
   if (t.attitude_waiting) {
     t.attitude_waiting = false;
     const Vec3<float> q = extension;
-    Convergence<float> convergence;
-    const sms_status status =
-        inverse_kinematics(app.derived.geometry, q, app.target_pose, app.target_pose, extension, convergence);
+    const sms_status status = inverse_kinematics(app.derived.geometry, q, app.target_pose, app.target_pose, extension);
     t.result = status == SMS_OK ? SetpointResult::accepted : SetpointResult::out_of_workspace;
   }
   if (t.result == SetpointResult::accepted) {
@@ -236,8 +234,7 @@ void follow_pose(Application& app) {
     return;
   }
   const Vec3<float> extension(app.sensed.extension[0], app.sensed.extension[1], app.sensed.extension[2]);
-  Convergence<float> convergence;
-  forward_kinematics(app.derived.geometry, extension, app.pose, app.pose, convergence);  // else as it was
+  forward_kinematics(app.derived.geometry, extension, app.pose, app.pose);  // else as it was
 }
 
 }  // namespace
@@ -248,9 +245,8 @@ sms_status derive(const Parameters& p, Derived& derived) {
   Derived d;
   d.geometry = make_geometry(p.machine);
   Vec3<float> level;
-  Convergence<float> convergence;
   const sms_status status = inverse_kinematics(d.geometry, Vec3<float>(0.0f, 0.0f, p.settings.level_height),
-                                               rest_pose(d.geometry), d.level_pose, level, convergence);
+                                               rest_pose(d.geometry), d.level_pose, level);
   if (status != SMS_OK) {
     return status;
   }
