@@ -1,4 +1,4 @@
-"""What the repository holds but nobody writes: two tables of its documentation, a stub.
+"""What the repository holds but nobody writes: two tables of its documentation, the frames of the bus, a stub.
 
 `./dev docs` regenerates them; `python -m validation.generate --check` says whether that is due.
 """
@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from sms import _core
+from validation.generate_frames import frames
 
 ROOT = Path(__file__).resolve().parent.parent
 HEADERS = ROOT / "libsms" / "include" / "sms"
@@ -97,6 +98,7 @@ def stub() -> str:
 GENERATED: Mapping[str, Callable[[], str]] = {
     "docs/parameters.md": parameter_table,
     "docs/equations.md": equation_table,
+    "libsms/include/sms/frames.def": frames,
     "python/sms/_core.pyi": stub,
 }
 
