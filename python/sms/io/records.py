@@ -78,9 +78,12 @@ def load_record(rig: Rig, source: RecordSource) -> Record:
 
     Cells that are not numbers are NaN in the arrays and stand in `findings`; no sample is dropped.
     """
-    table = read_table(source.file, rig.layout.delimiter, rig.layout.columns)
+    table = _read(rig, source.file)
     signals: dict[str, NDArray[np.float64]] = {}
-    findings: list[Finding] = []
+    findings = [
+        Finding("warning", source.file, r.line, r.column, r.message, r.remedy)
+        for r in table.remarks
+    ]
     for signal, wanted in rig.signals.items():
         column = _find_column(table, wanted, rig)
         if column is None:
@@ -97,6 +100,19 @@ def load_record(rig: Rig, source: RecordSource) -> Record:
         findings=tuple(findings),
         lines=table.lines,
     )
+
+
+def _read(rig: Rig, file: Path) -> Table:
+    """The table of a record: columns of a file, or a CAN log decoded by the rig's DBC."""
+    from sms.link.logs import is_can_log  # noqa: PLC0415 (python-can takes its time to import)
+
+    if not is_can_log(file):
+        return read_table(file, rig.layout.delimiter, rig.layout.columns)
+    from sms.io.can_logs import load_dbc, read_can_log  # noqa: PLC0415 (and so does cantools)
+    from sms.link.database import DBC_FILE  # noqa: PLC0415
+
+    wanted = {source.column: source.optional for source in rig.signals.values()}
+    return read_can_log(file, load_dbc(rig.layout.dbc or DBC_FILE), wanted)
 
 
 def _find_column(table: Table, wanted: SignalSource, rig: Rig) -> int | None:

@@ -83,6 +83,7 @@ class DataLayout:
 
     delimiter: Literal["comma", "semicolon", "tab", "whitespace"]
     columns: tuple[str, ...] | None  #: names for files without a header line
+    dbc: Path | None = None  #: the definition of the bus of CAN logs; None: the project's own
 
 
 @dataclass(frozen=True)
@@ -132,7 +133,9 @@ def interpret(file: RigFile, path: Path) -> Rig:
         kind=file.rig.kind,
         title=file.rig.title or path.stem,
         notes=file.rig.notes,
-        layout=DataLayout(data.delimiter, tuple(data.columns) if data.columns else None),
+        layout=DataLayout(
+            data.delimiter, tuple(data.columns) if data.columns else None, _dbc(data, path)
+        ),
         skip_first=data.skip_first,
         speed_above=speed_above,
         signals=_signals(file, path),
@@ -159,6 +162,18 @@ def _related_file(table: RelatedTable, number: int, path: Path) -> Path:
         raise InputError(
             f"{path}, {place('related', number, 'file')}: there is no rig file {file}; {remedy}"
         )
+    return file
+
+
+def _dbc(data: DataTable, path: Path) -> Path | None:
+    """The file that [data] dbc names, beside the rig file."""
+    if data.dbc is None:
+        return None
+    file = (path.parent / Path(data.dbc).expanduser()).resolve()
+    if not file.is_file():
+        near = nearest(file.name, (f.name for f in path.parent.glob("*.dbc")))
+        remedy = f"did you mean '{near}'?" if near else "name a DBC file beside the rig file"
+        raise InputError(f"{path}, {place('data', 'dbc')}: there is no file {file}; {remedy}")
     return file
 
 

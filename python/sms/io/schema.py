@@ -73,6 +73,7 @@ class DataTable(Table):
     obtain: str | None = None
     delimiter: Literal["comma", "semicolon", "tab", "whitespace"] = "comma"
     columns: list[str] | None = Field(default=None, min_length=1)
+    dbc: str | None = None
     skip_first: int = Field(default=0, ge=0)
     speed_above: TextOrNumber | None = None
 

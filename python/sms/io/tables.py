@@ -28,6 +28,16 @@ _SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "whitespace": r"\s+"
 _HEADER_WORD = re.compile(r"[^\s\[\]]+(?:\s*\[[^\]]*\])?")
 
 
+@dataclass(frozen=True)
+class Remark:
+    """Something seen while reading a file that its user should know; the samples are used."""
+
+    line: int | None  #: as in `Table.lines`; None: the file as a whole
+    column: str | None
+    message: str
+    remedy: str
+
+
 @dataclass(frozen=True, eq=False)
 class Table:
     """Named columns of one file, as they stand there."""
@@ -37,6 +47,7 @@ class Table:
     cells: pd.DataFrame  #: columns 0 to n - 1, numbers or text
     lines: NDArray[np.int64]  #: (samples,) line (in .mat and .parquet: row) of each sample
     other_lengths: Mapping[str, int]  #: vectors of a .mat file that are not as long as the rest
+    remarks: tuple[Remark, ...] = ()
 
     def numbers(self, column: int) -> tuple[NDArray[np.float64], list[tuple[int, str]]]:
         """One column as numbers (samples,), and the cells that are none: (index, their text)."""
@@ -65,7 +76,7 @@ def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Tab
         return _read_parquet(file)
     raise InputError(
         f"{file}: files with the ending '{ending}' are not read; save it as .csv "
-        f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet)"
+        f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet; CAN logs .blf, .mf4)"
     )
 
 

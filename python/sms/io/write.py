@@ -87,6 +87,7 @@ def write_extended_rig(
         _set_parameter(table, name, declaration, f"{out_path}, [parameters] {name}")
     _keep_data_reachable(document, original_path, out_path)
     _keep_related_reachable(document, original_path, out_path)
+    _keep_dbc_reachable(document, original_path, out_path)
     header = "".join(f"# {line}".rstrip() + "\n" for line in header_comment.splitlines())
     extended = f"{header}\n{tomlkit.dumps(document)}"
     again = interpret(parse_rig_text(extended, out_path), out_path)
@@ -169,5 +170,16 @@ def _keep_related_reachable(document: Any, original_path: Path, out_path: Path) 
     for entry in document.get("related", []):
         file = Path(_plain(entry["file"])).expanduser()
         if not file.is_absolute():
-            there = (original_path.parent / file).resolve()
-            entry["file"] = Path(os.path.relpath(there, out_path.parent.resolve())).as_posix()
+            entry["file"] = _from_new_place(file, original_path, out_path)
+
+
+def _keep_dbc_reachable(document: Any, original_path: Path, out_path: Path) -> None:
+    """Point [data] dbc from the new place to the file beside the original."""
+    file = Path(_plain(document.get("data", {}).get("dbc", "/"))).expanduser()
+    if not file.is_absolute():
+        document["data"]["dbc"] = _from_new_place(file, original_path, out_path)
+
+
+def _from_new_place(file: Path, original_path: Path, out_path: Path) -> str:
+    there = (original_path.parent / file).resolve()
+    return Path(os.path.relpath(there, out_path.parent.resolve())).as_posix()

@@ -1,0 +1,146 @@
+"""Logs of a CAN bus: BLF, ASC, MF4, CSV, candump and TRC by the ending of the name, through python-can.
+
+Writing is safe: frames go to a hidden file beside the wanted one, which takes its name when it is closed. So a reader
+sees a whole log or none, whatever stops the recording.
+"""
+
+from __future__ import annotations
+
+import re
+import secrets
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from pathlib import Path
+from types import MappingProxyType, TracebackType
+
+import can
+
+from sms.io.errors import InputError
+
+#: what `record` writes; the first words of a text file say whether it is such a log or a table
+WRITTEN = (".blf", ".asc", ".mf4", ".csv")
+_READERS: Mapping[str, type[can.io.generic.MessageReader]] = MappingProxyType(
+    {
+        ".blf": can.BLFReader,
+        ".asc": can.ASCReader,
+        ".mf4": can.MF4Reader,
+        ".csv": can.CSVReader,
+        ".log": can.CanutilsLogReader,
+        ".trc": can.TRCReader,
+    }
+)
+_OPENINGS: Mapping[str, str] = MappingProxyType(
+    {
+        ".asc": r"\s*(date|//|base)\b",
+        ".csv": r"timestamp,arbitration_id,extended,remote,error,dlc,data\s*$",
+        ".log": r"\(\d+\.\d+\) \S+ [0-9A-Fa-f]+#",
+    }
+)
+_NEEDS_MF4 = "MF4 needs one more package: pip install 'sms[can]', or use .blf"
+
+
+def is_can_log(file: Path) -> bool:
+    """Whether a file holds CAN frames, by its ending and, for text, by its first line."""
+    ending = file.suffix.lower()
+    if ending not in _OPENINGS:
+        return ending in _READERS
+    try:
+        with file.open(encoding="utf-8", errors="replace") as text:
+            return re.match(_OPENINGS[ending], text.readline(200)) is not None
+    except OSError:
+        return False
+
+
+def read_frames(file: Path) -> Iterator[can.Message]:
+    """The frames of a log in the order in which they stand there, times in s.
+
+    InputError names a file that is missing, of another kind or broken, and what to do.
+    """
+    reader = _READERS.get(file.suffix.lower())
+    if reader is None:
+        raise InputError(f"{file}: not a CAN log (known endings: {', '.join(_READERS)})")
+    if not file.is_file():
+        raise InputError(f"{file}: there is no such log; check the path")
+    number = 0
+    try:
+        if reader is can.ASCReader:  # times as written, not shifted to the date of the header
+            log: can.io.generic.MessageReader = can.ASCReader(file, relative_timestamp=True)
+        else:
+            log = reader(file)
+        with log:
+            for number, frame in enumerate(log, 1):  # noqa: B007 (named in the error below)
+                yield frame
+    except NotImplementedError:
+        raise InputError(f"{file}: {_NEEDS_MF4}") from None
+    except Exception as problem:  # each format's reader has errors of its own
+        raise InputError(
+            f"{file}: not a readable {file.suffix} log after frame {number} ({problem}); "
+            "it may have been cut off"
+        ) from None
+
+
+class LogWriter:
+    """A log that is written frame by frame and appears, whole, when it is closed."""
+
+    def __init__(self, file: Path) -> None:
+        """InputError for an ending that is not written, or a folder that cannot be."""
+        self.file = file
+        self.frames = 0
+        self._first: float | None = None
+        self._last = 0.0
+        ending = file.suffix.lower()
+        if ending not in WRITTEN:
+            raise InputError(f"{file}: the ending says the format; use {', '.join(WRITTEN)}")
+        self._temporary = file.with_name(f".{file.stem}.{secrets.token_hex(4)}{ending}")
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            self._writer = can.Logger(self._temporary)
+        except NotImplementedError:
+            raise InputError(f"{file}: {_NEEDS_MF4}") from None
+        except OSError as problem:
+            raise InputError(
+                f"{file}: cannot be written ({problem.strerror}); choose another folder"
+            ) from None
+
+    @property
+    def duration(self) -> float:
+        """From the first frame to the last, s."""
+        return 0.0 if self._first is None else self._last - self._first
+
+    def write(self, frame: can.Message) -> None:
+        """Append one frame."""
+        if self._first is None:
+            self._first = frame.timestamp
+        self._last = frame.timestamp
+        self.frames += 1
+        self._writer.on_message_received(frame)
+
+    def close(self) -> None:
+        """Finish the log and give it its name. A log without a frame is an InputError and no file."""
+        self._writer.stop()
+        if self.frames == 0:
+            self._temporary.unlink(missing_ok=True)
+            raise InputError(f"{self.file}: no frame came, so nothing was written")
+        self._temporary.replace(self.file)
+
+    def discard(self) -> None:
+        """Close without leaving anything."""
+        with suppress(Exception):  # the reason for discarding is what the caller reports
+            self._writer.stop()
+        self._temporary.unlink(missing_ok=True)
+
+    def __enter__(self) -> LogWriter:
+        """The writer itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        problem: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Finish the log; what was recorded before Ctrl-C is kept, after an error it is not."""
+        if kind is None or issubclass(kind, KeyboardInterrupt):
+            self.close()
+        else:
+            self.discard()
