@@ -196,7 +196,9 @@ def test_what_cannot_be_a_record_is_said(tmp_path: Path, dbc: Path) -> None:
     sentence = failure(tmp_path, "run.blf", both)
     assert "Air.temperature, Other.temperature" in sentence
     other = SIGNALS + 'chamber_pressure_upper = "Other.temperature"\n'
-    assert "'Other' with 'temperature' came 0 times" in failure(tmp_path, "run.blf", other)
+    assert "'Other' came 0 times, with 0 values of 'temperature'" in failure(
+        tmp_path, "run.blf", other
+    )
     (tmp_path / "run.blf").write_bytes(b"LOGG but no log")
     assert "not a readable .blf log" in failure(tmp_path, "run.blf", SIGNALS)
     with pytest.raises(InputError, match=r"use \.blf, \.asc, \.mf4, \.csv"):

@@ -1,12 +1,19 @@
 """CAN logs as records: frames decoded by a DBC into columns on one time base.
 
-The messages of a bus come at different times and rates. The times of a record are those of its fastest message: of the
-messages that hold a wanted signal, the one with the most frames. The signals of the others are led onto these times by
+The messages of a bus come at different times and rates. The times of a record are those of one of its messages: of
+those that hold a wanted signal, the one with the most frames. The signals of the others are led onto these times by
 straight lines between their frames; a signal with named values (a mode, a switch) keeps its last value instead. Before
 the first frame of the latest message and after the last of the earliest there is nothing to lead, so the record begins
 and ends there.
 
-Nothing is repaired in silence: gaps, frames out of order, frames too short for their message and bus errors are said.
+A signal `sample_time` is the sender's own clock, free of what the bus and the logger add: where a message has it, it is
+the message's time (unwrapped), and a message with it is preferred as the time base. A frame without one takes that of
+the frame with one before it, plus the time between the two.
+
+A value outside the range that the DBC gives its signal says that there is no value.
+
+Nothing is repaired in silence: gaps, frames out of order or too short for their message, missing values, a clock that
+jumps and bus errors are said.
 """
 
 from __future__ import annotations
@@ -22,13 +29,15 @@ import pandas as pd
 from cantools.database.can import Database, Message, Signal
 from numpy.typing import NDArray
 
-from sms.io.errors import InputError, did_you_mean, nearest
+from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Remark, Table
 from sms.io.units import split_column_name
 from sms.link.logs import read_frames
 
 GAP = 5.0  #: times the usual interval of a message
 TIME = "time"  #: the column of the frames' times, from the log's first frame on
+CLOCK = "sample_time"  #: the signal by which a sender says when it sampled
+CLOCK_JUMP = 1.0  #: s between the sender's clock and the logger's
 
 Array = NDArray[np.float64]
 
@@ -63,13 +72,22 @@ class Channel:
 class Frames:
     """What a log holds of one message."""
 
-    times: list[float] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)  #: of the logger, s, from its first frame on
+    stamps: list[float] = field(default_factory=list)  #: of the sender, s, where it sends them
     numbers: list[int] = field(default_factory=list)  #: place in the log, from 1
     values: dict[str, list[float]] = field(default_factory=dict)
 
 
+def no_value(signal: Signal, value: object) -> bool:
+    """Whether a decoded value lies outside the range of its signal: there is none."""
+    if not isinstance(value, (int, float)) or signal.minimum is None or signal.maximum is None:
+        return False
+    margin = 0.5 * abs(float(signal.scale))
+    return not float(signal.minimum) - margin <= value <= float(signal.maximum) + margin
+
+
 def find_channel(database: Database, column: str) -> Channel | None:
-    """The signal that a column names: "extension_1", "Extensions.extension_1", each also with unit.
+    """The signal that a column names: "extension_1", "Extension.extension_1", each also with unit.
 
     InputError when several messages have a signal of that name; None when none has.
     """
@@ -91,32 +109,30 @@ def find_channel(database: Database, column: str) -> Channel | None:
 def read_can_log(file: Path, database: Database, wanted: Mapping[str, bool]) -> Table:
     """The wanted columns of a log as a table; `wanted` says of each whether the record may lack it.
 
-    The column "time [s]" counts from the log's first frame. InputError for a column that no message
-    has, or a message that never came, unless it may lack.
+    The column "time [s]" counts from the log's first frame, or first clock reading. InputError for
+    a column that no message has, or that never came, unless it may lack.
     """
     channels = _channels(file, database, wanted)
-    messages = {channel.message.frame_id: channel.message for channel in channels.values()}
-    per_message = {
-        frame_id: Frames(
-            values={c.signal.name: [] for c in channels.values() if c.message is message}
-        )
-        for frame_id, message in messages.items()
-    }
-    remarks = _collect(file, messages, per_message)
-    for column, channel in list(channels.items()):
-        if len(per_message[channel.message.frame_id].times) < 2:
-            if not wanted[column]:
-                count = len(per_message[channel.message.frame_id].times)
-                raise InputError(
-                    f"{file}: the message '{channel.message.name}' with '{channel.signal.name}' "
-                    f"came {count} times; a record needs two frames at least"
-                )
-            del channels[column]
-    present = {c.message.frame_id for c in channels.values()}
-    if not present:
+    remarks: list[Remark] = []
+    per_message = _collect(file, database, channels, remarks)
+    clock = _clock(database, per_message, remarks)
+    kept: list[Channel] = []
+    series: dict[int, Series] = {}
+    for column, channel in channels.items():
+        number = channel.message.frame_id
+        if number not in series:
+            series[number] = _in_order(per_message[number], clock, channel.message, remarks)
+        count = np.count_nonzero(np.isfinite(series[number].values[channel.signal.name]))
+        if count >= 2:
+            kept.append(channel)
+        elif not wanted[column]:
+            raise InputError(
+                f"{file}: '{channel.message.name}' came {len(per_message[number].times)} times, "
+                f"with {count} values of '{channel.signal.name}'; a record needs two at least"
+            )
+    if not kept:
         raise InputError(f"{file}: none of the wanted messages came; check the DBC and the log")
-    ordered = {i: _in_order(per_message[i], messages[i], remarks) for i in sorted(present)}
-    return _on_one_time_base(file, list(channels.values()), ordered, remarks)
+    return _on_one_time_base(file, kept, series, remarks)
 
 
 def _channels(file: Path, database: Database, wanted: Mapping[str, bool]) -> dict[str, Channel]:
@@ -131,26 +147,32 @@ def _channels(file: Path, database: Database, wanted: Mapping[str, bool]) -> dic
         if channel is not None:
             channels[column] = channel
         elif not may_lack:
-            known = [signal.name for message in database.messages for signal in message.signals]
+            known = {signal.name for message in database.messages for signal in message.signals}
             name = split_column_name(column)[0]
-            near = nearest(name, known)
-            remedy = did_you_mean(name, known) if near else "`sms can signals` lists them"
+            remedy = did_you_mean(name, sorted(known))
             raise InputError(f"{file}: the DBC has no signal '{name}'; {remedy}")
     return channels
 
 
 def _collect(
-    file: Path, messages: Mapping[int, Message], into: Mapping[int, Frames]
-) -> list[Remark]:
-    """Decode the frames of the wanted messages; remarks on those that could not be used."""
+    file: Path, database: Database, channels: Mapping[str, Channel], remarks: list[Remark]
+) -> dict[int, Frames]:
+    """The frames of the wanted messages and of those with a clock, decoded, by identifier."""
+    wanted: dict[int, Frames] = {
+        m.frame_id: Frames() for m in database.messages if any(s.name == CLOCK for s in m.signals)
+    }
+    for channel in channels.values():
+        frames = wanted.setdefault(channel.message.frame_id, Frames())
+        frames.values[channel.signal.name] = []
+    messages = {number: database.get_message_by_frame_id(number) for number in wanted}
     start: float | None = None
-    short: Counter[str] = Counter()
-    first_short: dict[str, int] = {}
-    errors, first_error = 0, 0
+    unfit: Counter[str] = Counter()
+    first: dict[str, int] = {}
     for number, frame in enumerate(read_frames(file), 1):
         start = frame.timestamp if start is None else start
         if frame.is_error_frame:
-            errors, first_error = errors + 1, first_error or number
+            unfit[""] += 1
+            first.setdefault("", number)
             continue
         message = messages.get(frame.arbitration_id)
         if message is None or frame.is_remote_frame:
@@ -158,51 +180,98 @@ def _collect(
         try:
             decoded = message.decode_simple(bytes(frame.data), decode_choices=False)
         except Exception:  # cantools: DecodeError and its relatives
-            short[message.name] += 1
-            first_short.setdefault(message.name, number)
+            unfit[message.name] += 1
+            first.setdefault(message.name, number)
             continue
-        frames = into[frame.arbitration_id]
-        frames.times.append(frame.timestamp - start)
-        frames.numbers.append(number)
-        for name, values in frames.values.items():
+        into = wanted[frame.arbitration_id]
+        into.times.append(frame.timestamp - start)
+        into.numbers.append(number)
+        if isinstance(stamp := decoded.get(CLOCK), (int, float)):
+            into.stamps.append(float(stamp))
+        for name, values in into.values.items():
             value = decoded.get(name)  # absent: another frame of a multiplexed message
             values.append(float(value) if isinstance(value, (int, float)) else np.nan)
     if start is None:
         raise InputError(f"{file}: there is no frame in this log; record it again")
-    remarks = [
-        Remark(
-            first_short[name],
-            None,
-            f"{count} frames of '{name}' do not fit the DBC and were left out",
-            "check that the DBC is the one the bus was using",
-        )
-        for name, count in short.items()
-    ]
-    if errors:
-        what = f"{errors} error frames stand in the log"
-        remarks.append(Remark(first_error, None, what, "check bit rate, termination and cable"))
-    return remarks
+    for name, count in unfit.items():
+        if name:
+            what = f"{count} frames of '{name}' do not fit the DBC and were left out"
+            remarks.append(Remark(first[name], None, what, "check that it is the DBC of this bus"))
+        else:
+            what = f"{count} error frames stand in the log"
+            remarks.append(Remark(first[name], None, what, "check bit rate, termination and cable"))
+    return wanted
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The sender's clock: its readings (readings,), unwrapped, and when the logger saw them."""
+
+    seen: Array  #: s
+    reading: Array  #: s
+
+    def time(self, seen: Array) -> Array:
+        """The sender's time of frames without a reading, from when the logger saw them."""
+        if self.seen.size == 0:
+            return seen
+        last = np.maximum(np.searchsorted(self.seen, seen, side="right") - 1, 0)
+        return np.asarray(self.reading[last] + (seen - self.seen[last]))
+
+
+def _unwrapped(stamps: Array, seen: Array, wrap: float) -> Array:
+    """Readings of a clock that runs over every `wrap` seconds, by when the logger saw them."""
+    turns = np.round((seen - seen[0] - (stamps - stamps[0])) / wrap)
+    return np.asarray(stamps - stamps[0] + wrap * turns)
+
+
+def _clock(database: Database, per_message: dict[int, Frames], remarks: list[Remark]) -> Clock:
+    """All readings in the order in which the logger saw them; each message's are unwrapped."""
+    stamped = {number: frames for number, frames in per_message.items() if frames.stamps}
+    if not stamped:
+        return Clock(np.array([]), np.array([]))
+    signal = database.get_message_by_frame_id(next(iter(stamped))).get_signal_by_name(CLOCK)
+    wrap = 2.0**signal.length * float(signal.scale)
+    seen = np.concatenate([frames.times for frames in stamped.values()])
+    stamps = np.concatenate([frames.stamps for frames in stamped.values()])
+    numbers = np.concatenate([frames.numbers for frames in stamped.values()])
+    order = np.argsort(numbers, kind="stable")
+    readings = np.empty(seen.size)
+    readings[order] = _unwrapped(stamps[order], seen[order], wrap)
+    drift = np.abs(np.diff(readings[order] - seen[order]))
+    if drift.size and float(drift.max()) > CLOCK_JUMP:
+        worst = order[int(np.argmax(drift)) + 1]
+        what = f"the sender's clock jumps by {drift.max():.3g} s"
+        remarks.append(Remark(int(numbers[worst]), None, what, "was it reset while recording?"))
+    begin = 0
+    for frames in stamped.values():
+        end = begin + len(frames.times)
+        frames.stamps = list(readings[begin:end])
+        begin = end
+    order = np.argsort(seen, kind="stable")
+    return Clock(seen[order], readings[order])
 
 
 @dataclass(frozen=True)
 class Series:
     """One message in order of time: each array (frames,)."""
 
+    stamped: bool  #: by the sender's clock
     times: Array
     numbers: NDArray[np.int64]
     values: Mapping[str, Array]
 
 
-def _in_order(frames: Frames, message: Message, remarks: list[Remark]) -> Series:
+def _in_order(frames: Frames, clock: Clock, message: Message, remarks: list[Remark]) -> Series:
     """Sorted by time; of frames with the same time the first is kept; both are remarked."""
-    times = np.array(frames.times)
+    stamped = len(frames.stamps) > 0
+    times = np.array(frames.stamps) if stamped else clock.time(np.array(frames.times))
     numbers = np.array(frames.numbers, dtype=np.int64)
     order = np.argsort(times, kind="stable")
     back = np.flatnonzero(np.diff(times) < 0.0)
     if back.size:
         what = f"{back.size} frames of '{message.name}' stand out of order and were sorted by time"
         remarks.append(Remark(int(numbers[back[0] + 1]), None, what, "check the logger"))
-    kept = order[np.concatenate([[True], np.diff(times[order]) > 0.0])]
+    kept = order[np.flatnonzero(np.diff(times[order], prepend=-np.inf) > 0.0)]
     if kept.size < order.size:
         what = f"{order.size - kept.size} frames of '{message.name}' have the time of another one"
         remarks.append(
@@ -210,7 +279,23 @@ def _in_order(frames: Frames, message: Message, remarks: list[Remark]) -> Series
         )
     _remark_gaps(times[kept], numbers[kept], message, remarks)
     values = {name: np.array(v)[kept] for name, v in frames.values.items()}
-    return Series(times[kept], numbers[kept], values)
+    for name, column in values.items():
+        _drop_out_of_range(message.get_signal_by_name(name), column, numbers[kept], remarks)
+    return Series(stamped, times[kept], numbers[kept], values)
+
+
+def _drop_out_of_range(
+    signal: Signal, column: Array, numbers: NDArray[np.int64], remarks: list[Remark]
+) -> None:
+    """Make values outside the DBC's range NaN; remark when there are others too."""
+    lacking = np.array([no_value(signal, value) for value in column], dtype=bool)
+    column[lacking] = np.nan
+    count = np.count_nonzero(lacking)
+    if 0 < count < column.size:
+        first = int(np.argmax(lacking))
+        what = f"{count} of {column.size} values are outside the DBC's range, that is, no value"
+        remedy = "they are straight lines between the others; check the sensor, or the DBC"
+        remarks.append(Remark(int(numbers[first]), signal.name, what, remedy))
 
 
 def _remark_gaps(
@@ -236,7 +321,8 @@ def _remark_gaps(
 def _on_one_time_base(
     file: Path, channels: Sequence[Channel], series: Mapping[int, Series], remarks: list[Remark]
 ) -> Table:
-    base = max(series.values(), key=lambda s: s.times.size)
+    present = {channel.message.frame_id for channel in channels}
+    base = max((series[i] for i in sorted(present)), key=lambda s: (s.stamped, s.times.size))
     known = [_known(channel, series[channel.message.frame_id]) for channel in channels]
     begin = max(float(times[0]) for times, _ in known)
     end = min(float(times[-1]) for times, _ in known)

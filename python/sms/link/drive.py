@@ -1,0 +1,197 @@
+"""Streaming a deck motion to a rig: approach, motion, return, and how even the stream was."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sms.link.codec import period
+from sms.link.motion import MID_HEIGHT, DeckMotion
+from sms.link.rig_link import LinkError, RigLink
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, float], None]  #: what is being done, and which share of the whole is
+
+APPROACH = 4.0  #: s; from level to the motion's first sample, and back at the end
+LEVEL_TIME = 20.0  #: s; the longest that a platform may take to come up to mid-height
+LEVEL_BAND = 0.005  #: m; closer than this to mid-height counts as there
+LEFT = 0.15  #: s; a rig that says so long that it is not tracking is believed: three Status frames
+LATE = 0.5  #: of a period; a set-point sent later than this counts as late
+
+
+class InterruptedDriveError(LinkError):
+    """The rig left the mode tracking while it was driven."""
+
+
+@dataclass
+class Stream:
+    """How a motion was streamed and followed. Arrays have one entry a set-point."""
+
+    interval: float  #: s; intended
+    sent: Array = field(default_factory=lambda: np.empty(0))  #: s; when each set-point was sent
+    pose: Array = field(default_factory=lambda: np.empty((0, 3)))  #: (n, 3) as sent
+    followed: Array = field(
+        default_factory=lambda: np.empty((0, 3))
+    )  #: as the rig then said it was
+    left: float | None = None  #: s; since when the rig has said that it is not tracking
+    limited: int = 0  #: Status frames that said a set-point was limited
+    delays: list[float] = field(default_factory=list)  #: s; from set-point to its telemetry
+
+    @property
+    def lateness(self) -> Array:
+        """By how much each set-point was later than its due time, s."""
+        due = self.sent[0] + self.interval * np.arange(self.sent.size)
+        return np.asarray(self.sent - due)
+
+    @property
+    def jitter(self) -> Array:
+        """By how much each interval differs from the intended one, s."""
+        return np.asarray(np.diff(self.sent) - self.interval)
+
+    def summary(self) -> str:
+        """What a person should know about the stream."""
+        jitter = 1e3 * np.abs(self.jitter)
+        late = int(np.count_nonzero(self.lateness > LATE * self.interval))
+        lines = [
+            f"{self.sent.size} set-points, one every {1e3 * self.interval:g} ms; jitter of the interval: "
+            f"median {np.median(jitter):.3f} ms, 99 % below {np.quantile(jitter, 0.99):.3f} ms, "
+            f"largest {jitter.max():.3f} ms; {late} late by more than {LATE:.0%} of it"
+        ]
+        if self.delays:
+            delay = 1e3 * np.array(self.delays)
+            lines.append(
+                f"set-point to telemetry: median {np.median(delay):.2f} ms, largest {delay.max():.2f} ms"
+            )
+        error = self.followed - self.pose
+        if np.isfinite(error).any():
+            rms = np.sqrt(np.nanmean(error**2, axis=0))
+            lines.append(
+                f"the rig followed with an error (rms) of {np.degrees(rms[0]):.3f}° roll, "
+                f"{np.degrees(rms[1]):.3f}° pitch, {1e3 * rms[2]:.1f} mm height"
+            )
+        if self.limited:
+            lines.append("the rig limited set-points on the way: the motion asks for too much")
+        return "\n".join(lines)
+
+
+def drive(
+    link: RigLink,
+    motion: DeckMotion,
+    *,
+    rate: float | None = None,
+    law: str = "unchanged",
+    progress: Progress = lambda _what, _done: None,
+) -> Stream:
+    """Level the platform, approach the motion's begin, stream it, return to level.
+
+    `rate` in Hz; by default that of the DBC. The link must be connected; afterwards the rig is levelling.
+    LinkError when the rig refuses or stops following.
+    """
+    interval = period("AttitudeSetpoint") if rate is None else 1.0 / rate
+    approach = motion.at(np.array([0.0]))[0]
+    level = np.array([0.0, 0.0, MID_HEIGHT])
+    ways = motion.at(np.arange(0.0, motion.duration + 0.5 * interval, interval))
+    begin, end = _way(level, approach, interval), _way(ways[-1], level, interval)
+    whole = len(begin) + len(ways) + len(end)
+
+    progress("levelling", 0.0)
+    link.request_mode("levelling", law=law)
+    _wait_level(link)
+    link.send("AttitudeSetpoint", _setpoint(level))
+    link.request_mode("tracking")
+    _stream(link, begin, interval, lambda done: progress("approaching", done / whole))
+    stream = _stream(
+        link, ways, interval, lambda done: progress("driving", (len(begin) + done) / whole)
+    )
+    done_before = len(begin) + len(ways)
+    _stream(link, end, interval, lambda done: progress("returning", (done_before + done) / whole))
+    link.request_mode("levelling")
+    return stream
+
+
+def _way(begin: Array, end: Array, interval: float) -> Array:
+    """A path without jump in velocity or acceleration, (n, 3): a polynomial of degree 5 in time."""
+    s = np.linspace(0.0, 1.0, max(2, round(APPROACH / interval)))[:, np.newaxis]
+    return np.asarray(begin + (10.0 - 15.0 * s + 6.0 * s**2) * s**3 * (end - begin))
+
+
+def _setpoint(pose: Array) -> dict[str, float | int | str]:
+    roll, pitch, height = (float(value) for value in pose)
+    return {"roll_setpoint": roll, "pitch_setpoint": pitch, "height_setpoint": height}
+
+
+def _wait_level(link: RigLink) -> None:
+    def there() -> bool:
+        height = link.value("Attitude", "height")
+        return isinstance(height, float) and abs(height - MID_HEIGHT) < LEVEL_BAND
+
+    if not link.wait(there, LEVEL_TIME):
+        raise LinkError(
+            f"the platform did not come to mid-height within {LEVEL_TIME:g} s; "
+            "is there air, and is a control law with enough gain chosen?"
+        )
+
+
+def _stream(
+    link: RigLink, poses: Array, interval: float, progress: Callable[[int], None]
+) -> Stream:
+    stream = Stream(interval)
+    sent, followed = np.empty(len(poses)), np.full((len(poses), 3), np.nan)
+    start = link.clock()
+    waiting: tuple[int, float] | None = (
+        None  # alive counter of the newest set-point, when it was sent
+    )
+    for number, pose in enumerate(poses):
+        due = start + number * interval
+        while link.clock() < due:
+            link.poll(due)
+            waiting = _take_delay(link, stream, waiting)
+        _check_tracking(link, stream)
+        frame = link.send("AttitudeSetpoint", _setpoint(pose))
+        sent[number] = link.clock()
+        waiting = frame.data[1] & 0x0F, sent[number]
+        attitude = link.latest("Attitude")
+        if attitude is not None:
+            values = [attitude.signals.get(name) for name in ("roll", "pitch", "height")]
+            followed[number] = [v if isinstance(v, float) else np.nan for v in values]
+        progress(number + 1)
+    stream.sent, stream.pose, stream.followed = sent, poses, followed
+    return stream
+
+
+def _take_delay(
+    link: RigLink, stream: Stream, waiting: tuple[int, float] | None
+) -> tuple[int, float] | None:
+    """Note how long the telemetry of the newest set-point took, once it is there."""
+    if waiting is None:
+        return None
+    reading = link.latest("Setpoint")
+    if (
+        reading is None
+        or reading.time < waiting[1]
+        or reading.signals["setpoint_alive"] != waiting[0]
+        or reading.signals["setpoint_session"] != link.sender.session
+    ):
+        return waiting
+    stream.delays.append(reading.time - waiting[1])
+    return None
+
+
+def _check_tracking(link: RigLink, stream: Stream) -> None:
+    status = link.latest("Status")
+    if not link.is_alive() or status is None:
+        raise InterruptedDriveError("the rig fell silent while it was driven; check the bus")
+    if status.signals["mode"] == "tracking":
+        stream.left = None
+    elif stream.left is None:
+        stream.left = link.clock()
+    elif link.clock() - stream.left > LEFT:
+        raise InterruptedDriveError(
+            f"the rig left tracking for {status.signals['mode']}, "
+            f"first fault: {status.signals['first_fault']}; `sms can monitor` shows its state"
+        )
+    limits = ("limited_range", "limited_rate", "limited_acceleration")
+    stream.limited += any(status.signals[name] for name in limits)

@@ -1,0 +1,166 @@
+"""Parameters of a rig over the bus: read one, or write a set in two phases, all of it or nothing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import can
+import numpy as np
+
+from sms import _core
+from sms.io.errors import InputError, did_you_mean
+from sms.io.units import to_si
+from sms.link.codec import Value, decode, message
+from sms.link.rig_link import ANSWER, TRIES, LinkError, NotConnectedError, RefusedError, RigLink
+from sms.parameters import Parameter
+
+_CONFIRM = message("ParameterConfirm").frame_id
+SETTINGS_BASE = 4096  #: index of the first of the firmware's own settings
+
+#: `confirm_result`, docs/protocol.md, as a sentence goes on after "the rig refuses it: "
+_RESULTS = {
+    "unknown_index": "it does not know this parameter",
+    "out_of_range": "the value is outside the allowed range",
+    "not_a_number": "the value is not a number",
+    "wrong_hash": "its list of parameters is another one",
+    "moving": "the platform is not disabled; ask for the mode disabled first",
+    "discarded": "the transaction was discarded; nothing was changed",
+    "impossible_machine": "these parameters together are no machine; nothing was changed",
+}
+#: What loss on the bus can bring about: the transaction is then begun again.
+_TRY_AGAIN = ("no_transaction", "wrong_count", "timed_out")
+
+
+def known_parameters() -> dict[str, tuple[int, Parameter]]:
+    """Index on the bus and description of everything that can be read and written, by name."""
+    own = [*_core.parameter_table()]
+    settings = [*_core.firmware_settings()]
+    rows = [*enumerate(own), *enumerate(settings, SETTINGS_BASE)]
+    return {row.name: (index, row) for index, row in rows}
+
+
+def read_parameter(link: RigLink, name: str) -> float:
+    """The value in effect, in the parameter's SI unit. RefusedError, NotConnectedError."""
+    index = _index(name)
+    answer = _ask(link, "ParameterRead", {"parameter_index": index}, "read", index)
+    return float(answer["parameter_value"])
+
+
+def write_parameters(link: RigLink, values: Mapping[str, float]) -> dict[str, float]:
+    """Set parameters, SI, all at once between two ticks of the rig; what is in effect afterwards.
+
+    The values are checked here first. InputError; RefusedError when the rig refuses one: then none
+    is changed. A confirmation that gets lost begins the whole transaction again.
+    """
+    indices = {name: _index(name) for name in values}
+    for name, value in values.items():
+        _check(name, value)
+    for _ in range(TRIES):
+        try:
+            return _transaction(link, values, indices)
+        except _LostError:
+            continue
+    raise NotConnectedError("the rig confirms too little for a transaction; check the bus")
+
+
+class _LostError(LinkError):
+    """A confirmation of a write did not come: it may have counted, so begin again."""
+
+
+def _transaction(
+    link: RigLink, values: Mapping[str, float], indices: Mapping[str, int]
+) -> dict[str, float]:
+    _ask(link, "ParameterBegin", {"params_hash": _core.firmware_hash()}, "begin", None)
+    stored = {}
+    for name, value in values.items():
+        content: dict[str, Value] = {"parameter_index": indices[name], "parameter_value": value}
+        answer = _ask(link, "ParameterWrite", content, "write", indices[name], once=True)
+        stored[name] = float(answer["parameter_value"])
+    _ask(
+        link,
+        "ParameterCommit",
+        {"commit_action": "apply", "commit_count": len(values)},
+        "commit",
+        None,
+    )
+    return stored
+
+
+def _ask(
+    link: RigLink,
+    name: str,
+    content: Mapping[str, Value],
+    operation: str,
+    index: int | None,
+    *,
+    once: bool = False,
+) -> Mapping[str, Value]:
+    """Send a parameter frame until its confirmation comes; its signals."""
+    for _ in range(1 if once else TRIES):
+        sent = link.sender.frame(name, content)
+        link.transmit(sent)
+        end = link.clock() + ANSWER
+        while (frame := link.poll(end)) is not None:
+            if frame.arbitration_id == _CONFIRM and (answer := decode(frame)) is not None:
+                signals = answer[1]
+                if _answers(signals, sent, operation, index):
+                    return _checked(signals, operation)
+    if once:
+        raise _LostError
+    raise NotConnectedError(f"the rig did not confirm the {operation} of a parameter")
+
+
+def _answers(
+    signals: Mapping[str, Value], sent: can.Message, operation: str, index: int | None
+) -> bool:
+    """Whether a confirmation is that of one sent frame."""
+    return (
+        signals["confirm_alive"] == sent.data[1] & 0x0F
+        and signals["confirm_session"] == sent.data[1] >> 4
+        and signals["confirm_operation"] == operation
+        and (index is None or signals["parameter_index"] == index)
+    )
+
+
+def _checked(signals: Mapping[str, Value], operation: str) -> Mapping[str, Value]:
+    result = str(signals["confirm_result"])
+    if result in _TRY_AGAIN and operation != "begin":
+        raise _LostError
+    if result != "ok":
+        raise RefusedError(f"the rig refuses the {operation}: {_RESULTS.get(result, result)}")
+    return signals
+
+
+def _index(name: str) -> int:
+    known = known_parameters()
+    if name not in known:
+        raise InputError(f"there is no parameter '{name}'; {did_you_mean(name, known)}")
+    return known[name][0]
+
+
+def _check(name: str, value: float) -> None:
+    _, parameter = known_parameters()[name]
+    if not math.isfinite(value) or not parameter.lower <= value <= parameter.upper:
+        raise InputError(
+            f"{name} = {value:g} {parameter.unit} is outside the allowed range "
+            f"{parameter.lower:g} to {parameter.upper:g} {parameter.unit}; check number and unit"
+        )
+
+
+def is_default(name: str, value: float) -> bool:
+    """Whether a value read over the bus is the default, in the single precision of the rig."""
+    return bool(np.float32(known_parameters()[name][1].default) == np.float32(value))
+
+
+def parse_setting(text: str) -> tuple[str, float]:
+    """("bore_diameter", 0.1) from "bore_diameter=100 mm"; a number alone is in SI. InputError."""
+    name, equals, value = (part.strip() for part in text.partition("="))
+    if not equals:
+        raise InputError(f"{text}: write NAME=VALUE, for instance position_gain=20")
+    _index(name)
+    unit = known_parameters()[name][1].unit
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, to_si(value, unit, name)

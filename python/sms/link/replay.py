@@ -1,0 +1,66 @@
+"""A log onto a bus again, in its own time or faster."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import can
+
+from sms.io.errors import InputError
+from sms.link.codec import HOST, sent_by
+from sms.link.logs import read_frames
+from sms.link.rig_link import BusError
+
+REPORT = 500  #: frames between two calls of the progress
+
+
+@dataclass
+class Replayed:
+    """What was sent."""
+
+    frames: int = 0
+    duration: float = 0.0  #: of the traffic, s
+    elapsed: float = 0.0  #: that it took, s
+
+
+def replay(
+    log: Path,
+    bus: can.BusABC,
+    *,
+    speed: float = 1.0,
+    commands: bool = False,
+    progress: Callable[[int], None] = lambda _frames: None,
+) -> Replayed:
+    """Send the frames of a log; `speed` times real time, 0 as fast as the bus takes them.
+
+    Without `commands` what a desk sent is left out. InputError for a log that cannot be read, BusError.
+    """
+    if speed < 0.0:
+        raise InputError(f"--speed {speed:g}: time does not run backwards; write 0 or more")
+    ours = sent_by(HOST)
+    done = Replayed()
+    begin = time.monotonic()
+    first: float | None = None
+    for frame in read_frames(log):
+        if frame.is_error_frame or (not commands and frame.arbitration_id in ours):
+            continue
+        first = frame.timestamp if first is None else first
+        done.duration = frame.timestamp - first
+        if speed > 0.0:
+            time.sleep(max(0.0, begin + done.duration / speed - time.monotonic()))
+        try:
+            bus.send(frame)
+        except can.CanError as problem:
+            raise BusError(f"the bus took {done.frames} frames, then none ({problem})") from None
+        done.frames += 1
+        if done.frames % REPORT == 0:
+            progress(done.frames)
+    if done.frames == 0:
+        raise InputError(
+            f"{log}: there is nothing to replay in it; --commands sends a desk's frames too"
+        )
+    done.elapsed = time.monotonic() - begin
+    return done
