@@ -295,7 +295,10 @@ def rig(
     machine = VirtualRig(effects=effect or [], faults=fault or [], seed=seed)
     with _bus(interface, channel, bitrate) as bus:
         console = Console(stderr=True, quiet=quiet)
-        with console.status("the rig is running; Ctrl-C stops it") as status, suppress(KeyboardInterrupt):
+        with (
+            console.status("the rig is running; Ctrl-C stops it") as status,
+            suppress(KeyboardInterrupt),
+        ):
             run(machine, bus, seconds, status.update)
     print(machine.summary())
 

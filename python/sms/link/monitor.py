@@ -82,7 +82,9 @@ def _state(link: RigLink) -> Text:
 
 def fault_names(faults: int) -> list[str]:
     """The names of the bits that are set in `faults` of Status."""
-    choices: Mapping[int, object] = message("Status").get_signal_by_name("first_fault").choices or {}
+    choices: Mapping[int, object] = (
+        message("Status").get_signal_by_name("first_fault").choices or {}
+    )
     return [str(choices.get(bit, bit)) for bit in range(32) if faults >> bit & 1]
 
 
