@@ -19,6 +19,7 @@ APPROACH = 4.0  #: s; from level to the motion's first sample, and back at the e
 LEVEL_TIME = 20.0  #: s; the longest that a platform may take to come up to mid-height
 LEVEL_BAND = 0.005  #: m; closer than this to mid-height counts as there
 LEFT = 0.15  #: s; a rig that says so long that it is not tracking is believed: three Status frames
+ECHO = 0.1  #: s; the longest that the answer to a set-point may take
 LATE = 0.5  #: of a period; a set-point sent later than this counts as late
 
 
@@ -100,7 +101,7 @@ def drive(
     progress("levelling", 0.0)
     link.request_mode("levelling", law=law)
     _wait_level(link)
-    link.send("AttitudeSetpoint", _setpoint(level))
+    _send_and_await(link, level)
     link.request_mode("tracking")
     _stream(link, begin, interval, lambda done: progress("approaching", done / whole))
     stream = _stream(
@@ -121,6 +122,16 @@ def _way(begin: Array, end: Array, interval: float) -> Array:
 def _setpoint(pose: Array) -> dict[str, float | int | str]:
     roll, pitch, height = (float(value) for value in pose)
     return {"roll_setpoint": roll, "pitch_setpoint": pitch, "height_setpoint": height}
+
+
+def _send_and_await(link: RigLink, pose: Array) -> None:
+    """One set-point, until the rig says that it took it: a request to track needs a fresh one."""
+    frame = link.send("AttitudeSetpoint", _setpoint(pose))
+    alive = frame.data[1] & 0x0F
+    taken = link.wait(lambda: link.value("Setpoint", "setpoint_alive") == alive, ECHO)
+    result = link.value("Setpoint", "setpoint_result")
+    if not taken or result not in ("accepted", "limited"):
+        raise LinkError(f"the rig does not take set-points ({result}); `sms can monitor` shows its state")
 
 
 def _wait_level(link: RigLink) -> None:
