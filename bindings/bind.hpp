@@ -24,6 +24,7 @@ void bind_friction(py::module_& m);
 void bind_controller(py::module_& m);
 void bind_plant(py::module_& m);
 void bind_firmware(py::module_& m);
+void bind_virtual_rig(py::module_& m);
 #ifdef SMS_WITH_ESTIMATION
 void bind_estimation(py::module_& m);
 #endif

@@ -14,6 +14,7 @@ PYBIND11_MODULE(_core, m) {
   sms_python::bind_controller(m);
   sms_python::bind_plant(m);
   sms_python::bind_firmware(m);
+  sms_python::bind_virtual_rig(m);
 #ifdef SMS_WITH_ESTIMATION
   sms_python::bind_estimation(m);
   m.attr("has_estimation") = true;

@@ -1,5 +1,5 @@
 // The virtual rig: the firmware's application over a simulated platform, some periods at a time.
-#include "../libsms/firmware/virtual_rig.hpp"
+#include "virtual_rig.hpp"
 
 #include <array>
 #include <memory>
@@ -77,6 +77,7 @@ class VirtualRig {
   }
   void clear_fault(const std::string& name) { rig_.clear_fault(fault_of(name)); }
 
+  const sms::firmware::Application& application() const { return rig_.application(); }
   double time() const { return rig_.time(); }
   unsigned long evaluations() const { return rig_.evaluations(); }
   std::array<double, 3> pose() const {
@@ -134,6 +135,14 @@ void bind_virtual_rig(py::module_& m) {
       .def_property_readonly("pose", &VirtualRig::pose, "The truth: roll, pitch, rad; height, m.")
       .def_property_readonly("extension", &VirtualRig::extension, "The truth, m.")
       .def_property_readonly("extension_rate", &VirtualRig::extension_rate, "The truth, m/s.")
+      .def_property_readonly(
+          "mode", [](const VirtualRig& r) { return int(r.application().mode); }, "Of the controller, value table Mode.")
+      .def_property_readonly(
+          "faults", [](const VirtualRig& r) { return sms::firmware::all(r.application().faults); },
+          "Bit n - 1 is fault n of the value table Fault.")
+      .def_property_readonly(
+          "session", [](const VirtualRig& r) { return unsigned(r.application().link.session); },
+          "The session in control, 0: nobody.")
       .def_property_readonly(
           "chamber_pressure_lower", [](const VirtualRig& r) { return r.pressures(true); }, "The truth, Pa.")
       .def_property_readonly(

@@ -56,8 +56,7 @@ class VirtualRig {
   // At rest at a height, level, air in the chambers at a mean pressure, Pa. step: s, of the integrator.
   sms_status begin(double height, double mean_pressure, double step) {
     PlatformState<double> state;
-    const sms_status status =
-        platform_at_rest(plant_.plant, Vec3<double>(0.0, 0.0, height), mean_pressure, state);
+    const sms_status status = platform_at_rest(plant_.plant, Vec3<double>(0.0, 0.0, height), mean_pressure, state);
     if (status != SMS_OK) {
       return status;
     }
@@ -109,7 +108,14 @@ class VirtualRig {
       stuck_voltage_ = plant_.run.state.actuator[leg].spool.value;
     }
   }
-  void clear_fault(RigFault fault) { fault_[int(fault)].on = false; }
+  void clear_fault(RigFault fault) {
+    if (fault == RigFault::supply_lost && is_on(fault)) {
+      for (int i = 0; i < SMS_LEGS; ++i) {
+        plant_.run.state.actuator[i].supply_pressure = plant_.plant.params[i].supply_pressure;
+      }
+    }
+    fault_[int(fault)].on = false;
+  }
   bool is_on(RigFault fault) const { return fault_[int(fault)].on; }
 
   const Application& application() const { return app_; }

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchSimulation', 'CylinderProblem', 'CylinderRecord', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'VirtualRig', 'air_spring', 'alpha_beta', 'build_info', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -1628,6 +1628,192 @@ class PlatformSimulation:
         """
         s, where the plant is.
         """
+class FirmwareSetting:
+    """
+    What settings.def says of one setting of the firmware.
+    """
+    @property
+    def default(self) -> float:
+        ...
+    @property
+    def doc(self) -> str:
+        ...
+    @property
+    def index(self) -> int:
+        """
+        parameter_index on the bus
+        """
+    @property
+    def live(self) -> bool:
+        """
+        may be written while the platform is levelled
+        """
+    @property
+    def lower(self) -> float:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def unit(self) -> str:
+        ...
+    @property
+    def upper(self) -> float:
+        ...
+class ControllerOutputs:
+    """
+    What the controller puts out in one period.
+    """
+    @property
+    def characters(self) -> bytes:
+        """
+        characters for the console, at most 11
+        """
+    @property
+    def feed_watchdog(self) -> bool:
+        """
+        whether the board is to restart its watchdog
+        """
+    @property
+    def frames(self) -> list[tuple[int, bytes]]:
+        """
+        frames to be sent: (identifier, 8 octets), in this order
+        """
+    @property
+    def pulse_width(self) -> list[int]:
+        """
+        counts out of pwm_steps, one for each valve
+        """
+    @property
+    def valve_command(self) -> list[float]:
+        """
+        mean voltage of those pulses, V
+        """
+class Controller:
+    """
+    The application of the firmware (libsms/firmware), one call of tick() a control period.
+    """
+    def __init__(self, params: Params = ..., settings: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, reset_cause: typing.SupportsInt | typing.SupportsIndex = 0, seed: typing.SupportsInt | typing.SupportsIndex = 0) -> None:
+        """
+        As after a reset. settings: values by name (firmware_settings()); reset_cause: 0 power on, 1 watchdog, 2 request; seed: of the first challenge, another one each time.
+        """
+    def counts(self, extension: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], chamber_pressure_lower: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], chamber_pressure_upper: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], supply_pressure: typing.SupportsFloat | typing.SupportsIndex) -> list[int]:
+        """
+        The 10 counts that good sensors give: extension (3,), m; pressures (3,), Pa absolute; supply, Pa absolute.
+        """
+    def parameter(self, name: str) -> float:
+        """
+        A parameter or setting that is in effect.
+        """
+    def tick(self, converted: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], frames: collections.abc.Sequence[tuple[typing.SupportsInt | typing.SupportsIndex, bytes]] = [], characters: str = '', enabled: bool = True, bus_off: bool = False, missed_ticks: typing.SupportsInt | typing.SupportsIndex = 0, load: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> ControllerOutputs:
+        """
+        One control period (1 ms). converted: 10 counts of 12 bits, see counts(); frames: at most 8 received ones, (identifier, octets); characters: at most 16 from the console; enabled: the enable switch is closed; missed_ticks: periods without a tick before this one; load: duration of the last tick over the period.
+        """
+    @property
+    def control_law(self) -> int:
+        """
+        value table ControlLaw
+        """
+    @property
+    def extension(self) -> tuple:
+        """
+        as the controller measures it, m
+        """
+    @property
+    def extension_setpoint(self) -> tuple:
+        """
+        behind all limits, m
+        """
+    @property
+    def faults(self) -> int:
+        """
+        bit n - 1 is fault n of the value table Fault
+        """
+    @property
+    def mode(self) -> int:
+        """
+        value table Mode
+        """
+    @property
+    def session(self) -> int:
+        """
+        the session in control: 0 nobody, 15 the console
+        """
+    @property
+    def time(self) -> float:
+        """
+        s since reset
+        """
+class VirtualRig:
+    """
+    The firmware's application over a simulated platform (libsms/firmware/virtual_rig.hpp).
+    """
+    def __init__(self, *, params: typing.Annotated[collections.abc.Sequence[Params], "FixedSize(3)"], height: typing.SupportsFloat | typing.SupportsIndex, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex, position_noise: typing.SupportsFloat | typing.SupportsIndex, pressure_noise: typing.SupportsFloat | typing.SupportsIndex, seed: typing.SupportsInt | typing.SupportsIndex) -> None:
+        """
+        params of the plant, one set a leg; height m, mean_pressure Pa, step of the integrator s, noise in counts.
+        """
+    def clear_fault(self, name: str) -> None:
+        ...
+    def receive(self, identifier: typing.SupportsInt | typing.SupportsIndex, data: bytes) -> bool:
+        """
+        Hand a frame to the controller; False: too many are waiting, it is lost.
+        """
+    def set_fault(self, name: str, leg: typing.SupportsInt | typing.SupportsIndex, amount: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def step(self, periods: typing.SupportsInt | typing.SupportsIndex) -> list:
+        """
+        Run so many control periods; the frames sent: (time s, identifier, data).
+        """
+    @property
+    def chamber_pressure_lower(self) -> typing.Annotated[list[float], "FixedSize(3)"]:
+        """
+        The truth, Pa.
+        """
+    @property
+    def chamber_pressure_upper(self) -> typing.Annotated[list[float], "FixedSize(3)"]:
+        """
+        The truth, Pa.
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Of the plant's derivative, so far.
+        """
+    @property
+    def extension(self) -> typing.Annotated[list[float], "FixedSize(3)"]:
+        """
+        The truth, m.
+        """
+    @property
+    def extension_rate(self) -> typing.Annotated[list[float], "FixedSize(3)"]:
+        """
+        The truth, m/s.
+        """
+    @property
+    def faults(self) -> int:
+        """
+        Bit n - 1 is fault n of the value table Fault.
+        """
+    @property
+    def mode(self) -> int:
+        """
+        Of the controller, value table Mode.
+        """
+    @property
+    def pose(self) -> typing.Annotated[list[float], "FixedSize(3)"]:
+        """
+        The truth: roll, pitch, rad; height, m.
+        """
+    @property
+    def session(self) -> int:
+        """
+        The session in control, 0: nobody.
+        """
+    @property
+    def time(self) -> float:
+        """
+        s
+        """
 class CylinderRecord:
     """
     The compared samples of one record of the rig 'cylinder', as read; arrays (n,), SI.
@@ -1690,10 +1876,6 @@ def alpha_beta(measured: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
     """
     (values, rates), each (n,), of the alpha-beta filter that starts at value and rate.
     """
-def carried_points(params: Params, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], at_rest: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-    """
-    (n, 6) poses, (k, 3) points of the platform in the rest pose -> (n, 3 k) where they are, m, world axes.
-    """
 def chamber_energy_rates(params: Params, chamber: str, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], inflow: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], outflow: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], inflow_temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     (Pa/s, K/s, kg/s) by the full energy equation with heat from the wall (eq. 4.27).
@@ -1726,6 +1908,10 @@ def closed_loop(velocity_gain: typing.SupportsFloat | typing.SupportsIndex, natu
     """
     (square, linear, constant) of the denominator s^3 + square s^2 + linear s + constant under the gains given (eq. 8.4, 8.5); the numerator is the constant.
     """
+def command_crc(identifier: typing.SupportsInt | typing.SupportsIndex, challenge: typing.SupportsInt | typing.SupportsIndex, data: bytes) -> int:
+    """
+    The CRC of a command frame (docs/protocol.md): what its first octet has to be; data are its 8 octets.
+    """
 def conditioning(params: Params, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
     """
     (n, 6) poses -> (n, 2) condition numbers of rods and of all links, status.
@@ -1749,6 +1935,14 @@ def discharge_flow(params: Params, opening: typing.Annotated[numpy.typing.ArrayL
 def dynamics_terms(params: Params, masses: typing.SupportsInt | typing.SupportsIndex, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], qdot: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
     """
     (n, 3) each -> (n, 32) sms_dynamics, status.
+    """
+def firmware_hash() -> int:
+    """
+    Hash over params.def and settings.def, params_hash of the bus.
+    """
+def firmware_settings() -> list[FirmwareSetting]:
+    """
+    The list of settings.def; parameter_index on the bus is that of params.def below it.
     """
 def fit(problem: Problem, start: Params, free: collections.abc.Sequence[tuple[str, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex]], weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., max_iterations: typing.SupportsInt | typing.SupportsIndex = 100) -> Fit:
     """
@@ -1846,6 +2040,10 @@ def over_dead_band(params: Params, voltage: typing.Annotated[numpy.typing.ArrayL
     """
     Dead-band compensation, V (eq. 7.5).
     """
+def pack_frame(name: str, values: dict) -> bytes:
+    """
+    The firmware's codec: 8 octets of a frame from its signals; physical ones as float, others as int.
+    """
 def parameter_table() -> list[ParameterInfo]:
     """
     Every parameter, in the order of params.def.
@@ -1937,6 +2135,10 @@ def tube_delay(params: Params) -> float:
 def tube_transmission(params: Params, mass_flow: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> typing.Any:
     """
     Part of a mass flow that the tube lets through.
+    """
+def unpack_frame(name: str, data: bytes) -> typing.Any:
+    """
+    The firmware's codec: the signals of a frame; None when the frame is not whole.
     """
 def valve_command(params: Params, voltage: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> typing.Any:
     """

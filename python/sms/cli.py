@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
-from sms import _core, cli_identify, cli_mechanism, cli_simulate, cli_study
+from sms import _core, cli_can, cli_identify, cli_mechanism, cli_simulate, cli_study
 from sms.io.errors import InputError
 
 app = typer.Typer(
@@ -96,6 +96,7 @@ cli_mechanism.register(app)
 cli_identify.register(app)
 cli_simulate.register(app)
 cli_study.register(app)
+cli_can.register(app)
 
 
 def main() -> None:

@@ -210,7 +210,7 @@ def get(
         for name in names or known:
             value = read_parameter(link, name)
             if not changed or not is_default(name, value):
-                print(f"{name} = {value:.7g} {known[name][1].unit}")
+                print(f"{name} = {value:.7g} {known[name].unit}")
 
 
 @can_app.command(

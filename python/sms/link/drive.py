@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import can
 import numpy as np
 from numpy.typing import NDArray
 
@@ -127,11 +128,12 @@ def _setpoint(pose: Array) -> dict[str, float | int | str]:
 def _send_and_await(link: RigLink, pose: Array) -> None:
     """One set-point, until the rig says that it took it: a request to track needs a fresh one."""
     frame = link.send("AttitudeSetpoint", _setpoint(pose))
-    alive = frame.data[1] & 0x0F
-    taken = link.wait(lambda: link.value("Setpoint", "setpoint_alive") == alive, ECHO)
+    taken = link.wait(lambda: _is_answer(link, frame), ECHO)
     result = link.value("Setpoint", "setpoint_result")
     if not taken or result not in ("accepted", "limited"):
-        raise LinkError(f"the rig does not take set-points ({result}); `sms can monitor` shows its state")
+        raise LinkError(
+            f"the rig does not take set-points ({result}); `sms can monitor` shows its state"
+        )
 
 
 def _wait_level(link: RigLink) -> None:
@@ -152,18 +154,18 @@ def _stream(
     stream = Stream(interval)
     sent, followed = np.empty(len(poses)), np.full((len(poses), 3), np.nan)
     start = link.clock()
-    waiting: tuple[int, float] | None = (
-        None  # alive counter of the newest set-point, when it was sent
-    )
+    unanswered: can.Message | None = None
     for number, pose in enumerate(poses):
         due = start + number * interval
         while link.clock() < due:
             link.poll(due)
-            waiting = _take_delay(link, stream, waiting)
+            if unanswered is not None and _is_answer(link, unanswered):
+                stream.delays.append(link.clock() - sent[number - 1])
+                unanswered = None
         _check_tracking(link, stream)
         frame = link.send("AttitudeSetpoint", _setpoint(pose))
         sent[number] = link.clock()
-        waiting = frame.data[1] & 0x0F, sent[number]
+        unanswered = frame
         attitude = link.latest("Attitude")
         if attitude is not None:
             values = [attitude.signals.get(name) for name in ("roll", "pitch", "height")]
@@ -173,22 +175,14 @@ def _stream(
     return stream
 
 
-def _take_delay(
-    link: RigLink, stream: Stream, waiting: tuple[int, float] | None
-) -> tuple[int, float] | None:
-    """Note how long the telemetry of the newest set-point took, once it is there."""
-    if waiting is None:
-        return None
+def _is_answer(link: RigLink, setpoint: can.Message) -> bool:
+    """Whether the last telemetry of set-points is the answer to this frame."""
     reading = link.latest("Setpoint")
-    if (
-        reading is None
-        or reading.time < waiting[1]
-        or reading.signals["setpoint_alive"] != waiting[0]
-        or reading.signals["setpoint_session"] != link.sender.session
-    ):
-        return waiting
-    stream.delays.append(reading.time - waiting[1])
-    return None
+    return (
+        reading is not None
+        and reading.signals["setpoint_alive"] == setpoint.data[1] & 0x0F
+        and reading.signals["setpoint_session"] == setpoint.data[1] >> 4
+    )
 
 
 def _check_tracking(link: RigLink, stream: Stream) -> None:

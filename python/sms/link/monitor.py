@@ -81,11 +81,11 @@ def _state(link: RigLink) -> Text:
 
 
 def fault_names(faults: int) -> list[str]:
-    """The names of the bits that are set in `faults` of Status."""
+    """The names of the faults in `faults` of Status: bit n - 1 is fault n."""
     choices: Mapping[int, object] = (
         message("Status").get_signal_by_name("first_fault").choices or {}
     )
-    return [str(choices.get(bit, bit)) for bit in range(32) if faults >> bit & 1]
+    return [str(choices.get(bit + 1, bit + 1)) for bit in range(24) if faults >> bit & 1]
 
 
 def _add_rows(table: Table, link: RigLink, name: str, rates: Mapping[int, float]) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
 
 import can
 import numpy as np
@@ -13,10 +15,9 @@ from sms.io.errors import InputError, did_you_mean
 from sms.io.units import to_si
 from sms.link.codec import Value, decode, message
 from sms.link.rig_link import ANSWER, TRIES, LinkError, NotConnectedError, RefusedError, RigLink
-from sms.parameters import Parameter
+from sms.parameters import PARAMETERS
 
 _CONFIRM = message("ParameterConfirm").frame_id
-SETTINGS_BASE = 4096  #: index of the first of the firmware's own settings
 
 #: `confirm_result`, docs/protocol.md, as a sentence goes on after "the rig refuses it: "
 _RESULTS = {
@@ -32,12 +33,31 @@ _RESULTS = {
 _TRY_AGAIN = ("no_transaction", "wrong_count", "timed_out")
 
 
-def known_parameters() -> dict[str, tuple[int, Parameter]]:
-    """Index on the bus and description of everything that can be read and written, by name."""
-    own = [*_core.parameter_table()]
-    settings = [*_core.firmware_settings()]
-    rows = [*enumerate(own), *enumerate(settings, SETTINGS_BASE)]
-    return {row.name: (index, row) for index, row in rows}
+@dataclass(frozen=True)
+class RigParameter:
+    """What is known of something that a rig lets read and write."""
+
+    index: int  #: on the bus
+    name: str
+    unit: str  #: SI; "1" is dimensionless
+    lower: float
+    default: float
+    upper: float
+    live: bool  #: may also be written while the platform is levelled
+
+
+@cache
+def known_parameters() -> Mapping[str, RigParameter]:
+    """The parameters of params.def and the firmware's own settings, by name."""
+    machine = [
+        RigParameter(i, p.name, p.unit, p.lower, p.default, p.upper, False)
+        for i, p in enumerate(PARAMETERS.values())
+    ]
+    settings = [
+        RigParameter(s.index, s.name, s.unit, s.lower, s.default, s.upper, s.live)
+        for s in _core.firmware_settings()
+    ]
+    return {p.name: p for p in (*machine, *settings)}
 
 
 def read_parameter(link: RigLink, name: str) -> float:
@@ -136,11 +156,11 @@ def _index(name: str) -> int:
     known = known_parameters()
     if name not in known:
         raise InputError(f"there is no parameter '{name}'; {did_you_mean(name, known)}")
-    return known[name][0]
+    return known[name].index
 
 
 def _check(name: str, value: float) -> None:
-    _, parameter = known_parameters()[name]
+    parameter = known_parameters()[name]
     if not math.isfinite(value) or not parameter.lower <= value <= parameter.upper:
         raise InputError(
             f"{name} = {value:g} {parameter.unit} is outside the allowed range "
@@ -150,7 +170,7 @@ def _check(name: str, value: float) -> None:
 
 def is_default(name: str, value: float) -> bool:
     """Whether a value read over the bus is the default, in the single precision of the rig."""
-    return bool(np.float32(known_parameters()[name][1].default) == np.float32(value))
+    return bool(np.float32(known_parameters()[name].default) == np.float32(value))
 
 
 def parse_setting(text: str) -> tuple[str, float]:
@@ -159,7 +179,7 @@ def parse_setting(text: str) -> tuple[str, float]:
     if not equals:
         raise InputError(f"{text}: write NAME=VALUE, for instance position_gain=20")
     _index(name)
-    unit = known_parameters()[name][1].unit
+    unit = known_parameters()[name].unit
     try:
         return name, float(value)
     except ValueError:
