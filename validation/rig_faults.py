@@ -2,10 +2,11 @@
 
     python -m validation.rig_faults
 
-The controller alone is tried by validation.faults, exactly and with limits of time. Here the virtual rig (libsms/firmware/virtual_rig.hpp) follows a motion under a desk, over python-can's virtual bus, in
-simulated time. Then something goes wrong. Measured at every millisecond: when the controller says so, which mode it
-takes, how far and how fast the pistons went. Then the cause is taken away, and the way back is gone. A trial fails
-when a fault is not said, the mode is another one, a piston leaves the stroke, or the way back leads nowhere.
+The controller alone is tried by validation.faults, exactly and with limits of time. Here the virtual rig
+(libsms/firmware/virtual_rig.hpp) follows a motion under a desk, over python-can's virtual bus, in simulated time.
+Then something goes wrong. Measured at every millisecond: when the controller says so, which mode it takes, how far
+and how fast the pistons went. Then the cause is taken away, and the way back is gone. A trial fails when a fault is
+not said, the mode is another one, a piston leaves the stroke, or the way back leads nowhere.
 
 The table in docs/rig_faults.md is what this program prints.
 """
@@ -269,18 +270,14 @@ def disturbed(kind: str) -> Trial:
     )
 
 
-def of_machine(
-    text: str, title: str, says: str, mode: str, does: str, back: str, **more: float
-) -> Trial:
+def of_machine(text: str, title: str, says: str, mode: str, does: str, back: str) -> Trial:
     """A fault of the rig's own, until it is cured."""
 
     def run(stage: Stage, seconds: float) -> None:
         stage.fault(text)
         stage.stream(seconds)
 
-    return Trial(
-        title, (says,), (mode,), does, back, run, cure=lambda stage: stage.clear(text), **more
-    )
+    return Trial(title, (says,), (mode,), does, back, run, cure=lambda stage: stage.clear(text))
 
 
 def bus_off(stage: Stage, seconds: float) -> None:
@@ -551,9 +548,10 @@ TRIALS: tuple[Trial, ...] = (
 HEAD = """\
 # Faults through the whole chain
 
-Made by `python -m validation.rig_faults`: every fault is made on the virtual rig, that is on the firmware's own application
-over the simulated plant, while it tracks a motion of 2.3 deg roll, 1.7 deg pitch and 30 mm heave under a desk on
-python-can's virtual bus, in simulated time; each with {seeds} seeds. The controller alone: [faults.md](faults.md).
+Made by `python -m validation.rig_faults`: every fault is made on the virtual rig, that is on the firmware's own
+application over the simulated plant, while it tracks a motion of 2.3 deg roll, 1.7 deg pitch and 30 mm heave under a
+desk on python-can's virtual bus, in simulated time; each with {seeds} seeds. The controller alone, with the limits of
+time that it has to keep: [faults.md](faults.md).
 
 - *detected*: from the fault to the first millisecond in which the controller says it; median and worst.
 - *pistons*: the extensions reached in the whole trial, with the way back, of a stroke of 0 to 400 mm; the fastest.
