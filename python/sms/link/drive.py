@@ -128,7 +128,7 @@ def _setpoint(pose: Array) -> dict[str, float | int | str]:
 def _send_and_await(link: RigLink, pose: Array) -> None:
     """One set-point, until the rig says that it took it: a request to track needs a fresh one."""
     frame = link.send("AttitudeSetpoint", _setpoint(pose))
-    taken = link.wait(lambda: _is_answer(link, frame), ECHO)
+    taken = link.wait(lambda: is_answer(link, frame), ECHO)
     result = link.value("Setpoint", "setpoint_result")
     if not taken or result not in ("accepted", "limited"):
         raise LinkError(
@@ -159,7 +159,7 @@ def _stream(
         due = start + number * interval
         while link.clock() < due:
             link.poll(due)
-            if unanswered is not None and _is_answer(link, unanswered):
+            if unanswered is not None and is_answer(link, unanswered):
                 stream.delays.append(link.clock() - sent[number - 1])
                 unanswered = None
         _check_tracking(link, stream)
@@ -175,7 +175,7 @@ def _stream(
     return stream
 
 
-def _is_answer(link: RigLink, setpoint: can.Message) -> bool:
+def is_answer(link: RigLink, setpoint: can.Message) -> bool:
     """Whether the last telemetry of set-points is the answer to this frame."""
     reading = link.latest("Setpoint")
     return (

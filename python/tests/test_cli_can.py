@@ -1,0 +1,105 @@
+"""The commands `sms can ...`: their help, their errors, and what they do on a virtual bus."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sms.cli import app
+from sms.io import InputError
+from sms.io.can_logs import load_dbc, read_can_log
+from sms.link.codec import DBC_FILE
+from typer.testing import CliRunner, Result
+
+COMMANDS = ("monitor", "drive", "record", "replay", "get", "set", "rig")
+
+
+def run(*words: str) -> Result:
+    return CliRunner().invoke(app, ["can", *words], env={"COLUMNS": "200", "TERM": "dumb"})
+
+
+def output_of(*words: str) -> str:
+    result = run(*words)
+    assert result.exit_code == 0, result.output
+    return re.sub(r"\x1b\[[0-9;]*m", "", result.output)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_teaches(command: str) -> None:
+    text = output_of(command, "--help")
+    assert "Example: sms can" in " ".join(text.split()) or "sms can" in text
+    for option in ("--interface", "--channel", "--bitrate"):
+        assert option in text
+
+
+def test_get_reads_from_the_rig_that_comes_with_a_virtual_bus() -> None:
+    text = output_of("get", "position_gain", "level_height")
+    assert "position_gain = 40 V/m\nlevel_height = 0.5 m\n" in text
+
+
+def test_set_checks_before_it_sends() -> None:
+    for setting, said in (("position_gian=1", "did you mean"), ("level_height=99", "outside")):
+        with pytest.raises(InputError, match=said):
+            CliRunner().invoke(app, ["can", "set", setting], catch_exceptions=False)
+
+
+def test_set_writes() -> None:
+    assert "position_gain = 20\n" in output_of("set", "position_gain=20", "--disable")
+
+
+def test_monitor_shows_names_values_and_units() -> None:
+    text = output_of("monitor", "--seconds", "0.7")
+    for word in (
+        "mode disabled",
+        "enable switch closed",
+        "extension_1",
+        "mm",
+        "chamber_pressure_lower_3",
+        "kPa",
+    ):
+        assert word in text
+
+
+def test_a_recording_is_a_record(tmp_path: Path) -> None:
+    log = tmp_path / "run.blf"
+    text = output_of("record", str(log), "--seconds", "1.0")
+    assert f"written: {log}" in text
+    table = read_can_log(log, load_dbc(DBC_FILE), {"extension_1": False, "valve_command_2": False})
+    time, _ = table.numbers(0)
+    # The controller's own clock: steps of 10 ms to the bit of its 1 ms resolution, whatever the computer did.
+    np.testing.assert_allclose(np.diff(time), 0.01, atol=1e-9)
+    assert table.names == ("time [s]", "extension_1 [m]", "valve_command_2 [V]")
+    assert np.all(np.abs(table.numbers(2)[0] - 5.0) < 0.02)
+
+
+def test_what_cannot_be_replayed_is_said(tmp_path: Path) -> None:
+    for name, said in (("absent.blf", "no such log"), ("run.xyz", "not a CAN log")):
+        with pytest.raises(InputError, match=said):
+            CliRunner().invoke(app, ["can", "replay", str(tmp_path / name)], catch_exceptions=False)
+
+
+def test_drive_refuses_before_anything_moves(tmp_path: Path) -> None:
+    motion = tmp_path / "motion.csv"
+    motion.write_text("time [s],roll [deg]\n0,0\n1,25\n")
+    with pytest.raises(InputError, match="leaves the workspace"):
+        CliRunner().invoke(app, ["can", "drive", str(motion)], catch_exceptions=False)
+
+
+def test_a_rig_on_a_virtual_bus_would_be_alone() -> None:
+    with pytest.raises(InputError, match="ends at this process"):
+        CliRunner().invoke(app, ["can", "rig", "--interface", "virtual"], catch_exceptions=False)
+
+
+def test_rig_lists_its_faults() -> None:
+    text = output_of("rig", "--faults")
+    assert "sensor_stuck" in text
+    assert "frames_lost" in text
+
+
+def test_no_rig_on_the_bus_is_exit_code_1() -> None:
+    pytest.importorskip("msgpack", reason="the bus over UDP needs the extra sms[can]")
+    result = run("get", "stroke", "--interface", "udp_multicast", "--channel", "239.74.163.99")
+    assert result.exit_code == 1
+    assert "no rig answers" in result.output
