@@ -188,6 +188,34 @@ def replay(
 
 
 @can_app.command(
+    epilog="Example: **sms can table run.blf --out run.csv**, then open it in any program that reads tables."
+)
+def table(
+    log: Annotated[Path, typer.Argument(help="The log: .blf, .asc, .mf4, .csv, .log, .trc.")],
+    out: Annotated[Path, typer.Option(help="The table to write, .csv or .csv.gz.")] = Path(
+        "run.csv"
+    ),
+) -> None:
+    """Turn a log of the rig's bus into a table: one column a signal, named "extension_1 [m]", on one time base.
+
+    Other commands need no table: a rig file names the log itself as a record.
+    """
+    from sms.io.tables import read_table  # noqa: PLC0415
+    from sms.io.write import write_table  # noqa: PLC0415
+    from sms.link.logs import is_can_log  # noqa: PLC0415
+
+    if not is_can_log(log):
+        raise InputError(f"{log}: there is no such CAN log; check the path")
+    found = read_table(log, "comma", None)
+    for remark in found.remarks:
+        print(
+            f"sms: {log}, frame {remark.line}: {remark.message}; {remark.remedy}", file=sys.stderr
+        )
+    write_table(out, {name: found.numbers(i)[0] for i, name in enumerate(found.names)})
+    print(f"written: {out} ({len(found.lines)} rows, {len(found.names)} columns)")
+
+
+@can_app.command(
     epilog="Example: **sms can get position_gain payload_mass**. Without a name: everything the rig knows."
 )
 def get(

@@ -10,7 +10,7 @@ import pytest
 from sms.cli import app
 from sms.io import InputError
 from sms.io.can_logs import load_dbc, read_can_log
-from sms.link.codec import DBC_FILE
+from sms.io.tables import read_table
 from typer.testing import CliRunner, Result
 
 COMMANDS = ("monitor", "drive", "record", "replay", "get", "set", "rig")
@@ -66,12 +66,22 @@ def test_a_recording_is_a_record(tmp_path: Path) -> None:
     log = tmp_path / "run.blf"
     text = output_of("record", str(log), "--seconds", "1.0")
     assert f"written: {log}" in text
-    table = read_can_log(log, load_dbc(DBC_FILE), {"extension_1": False, "valve_command_2": False})
+    table = read_can_log(log, load_dbc(), {"extension_1": False, "valve_command_2": False})
     time, _ = table.numbers(0)
     # The controller's own clock: steps of 10 ms to the bit of its 1 ms resolution, whatever the computer did.
     np.testing.assert_allclose(np.diff(time), 0.01, atol=1e-9)
     assert table.names == ("time [s]", "extension_1 [m]", "valve_command_2 [V]")
     assert np.all(np.abs(table.numbers(2)[0] - 5.0) < 0.02)
+
+    csv = tmp_path / "run.csv"
+    assert f"written: {csv}" in output_of("table", str(log), "--out", str(csv))
+    whole, written = read_table(log, "comma", None), read_table(csv, "comma", None)
+    assert {"roll [rad]", "Setpoint.extension_setpoint_1 [m]", "supply_pressure [Pa]"} < set(
+        whole.names
+    )
+    assert whole.names == written.names
+    for column in range(len(whole.names)):
+        np.testing.assert_array_equal(whole.numbers(column)[0], written.numbers(column)[0])
 
 
 def test_what_cannot_be_replayed_is_said(tmp_path: Path) -> None:

@@ -29,11 +29,13 @@ import pandas as pd
 from cantools.database.can import Database, Message, Signal
 from numpy.typing import NDArray
 
+from sms import _core
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Remark, Table
 from sms.io.units import split_column_name
 from sms.link.logs import read_frames
 
+TELEMETRY = "Controller"  #: who sends the telemetry of the project's own bus
 GAP = 5.0  #: times the usual interval of a message
 TIME = "time"  #: the column of the frames' times, from the log's first frame on
 CLOCK = "sample_time"  #: the signal by which a sender says when it sampled
@@ -42,8 +44,13 @@ CLOCK_JUMP = 1.0  #: s between the sender's clock and the logger's
 Array = NDArray[np.float64]
 
 
-def load_dbc(path: Path) -> Database:
-    """Read a DBC file. InputError when it is missing or not one."""
+#: The project's own bus, libsms/firmware/sms.dbc, installed beside the compiled module.
+DBC_FILE = Path(_core.__file__).with_name("sms.dbc")
+
+
+def load_dbc(path: Path | None = None) -> Database:
+    """Read a DBC file, by default the project's own. InputError when it is missing or not one."""
+    path = DBC_FILE if path is None else path
     try:
         database = cantools.database.load_file(path, database_format="dbc", strict=True)
     except OSError as problem:
@@ -133,6 +140,23 @@ def read_can_log(file: Path, database: Database, wanted: Mapping[str, bool]) -> 
     if not kept:
         raise InputError(f"{file}: none of the wanted messages came; check the DBC and the log")
     return _on_one_time_base(file, kept, series, remarks)
+
+
+def read_telemetry(file: Path) -> Table:
+    """All physical signals, that is those with a unit, that the controller of the project's bus sent.
+
+    A name that a command has, too, is written with its message: "Setpoint.extension_setpoint_1".
+    """
+    database = load_dbc()
+    names = Counter(signal.name for message in database.messages for signal in message.signals)
+    wanted = [
+        signal.name if names[signal.name] == 1 else f"{message.name}.{signal.name}"
+        for message in database.messages
+        if TELEMETRY in message.senders and message.cycle_time
+        for signal in message.signals
+        if signal.unit and signal.name != CLOCK
+    ]
+    return read_can_log(file, database, dict.fromkeys(wanted, True))
 
 
 def _channels(file: Path, database: Database, wanted: Mapping[str, bool]) -> dict[str, Channel]:

@@ -62,11 +62,17 @@ class Table:
 
 
 def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
-    """Read a file by its ending.
+    """Read a file by its ending; of a CAN log everything that the controller told, see can_logs.py.
 
     `delimiter` ("comma", "semicolon", "tab", "whitespace") is for text files; `columns` names the
     columns of a file that has no header line, or of the one matrix of a .mat file.
     """
+    from sms.link.logs import is_can_log  # noqa: PLC0415 (python-can takes its time to import)
+
+    if is_can_log(file):
+        from sms.io.can_logs import read_telemetry  # noqa: PLC0415 (and so does cantools)
+
+        return read_telemetry(file)
     ending = Path(file.name.lower().removesuffix(".gz")).suffix
     if ending in TEXT_ENDINGS:
         return _read_text(file, delimiter, columns)

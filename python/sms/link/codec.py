@@ -10,19 +10,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import can
 from cantools.database.can import Database, Message
 from cantools.database.namedsignalvalue import NamedSignalValue
 from crccheck.crc import Crc8SaeJ1850
 
-from sms import _core
 from sms.io.can_logs import load_dbc, no_value
 from sms.io.errors import InputError, did_you_mean
 
-#: The definition of the bus, libsms/firmware/sms.dbc, installed beside the compiled module.
-DBC_FILE = Path(_core.__file__).with_name("sms.dbc")
 HOST, CONTROLLER = "Host", "Controller"
 CHECKED = ("crc", "alive", "session")  #: the signals that protect a command frame
 _ALIVE_MODULUS = 16
@@ -33,7 +29,7 @@ Value = float | int | str  #: a signal's value; the name where the DBC names val
 @cache
 def bus_definition() -> Database:
     """The project's bus."""
-    return load_dbc(DBC_FILE)
+    return load_dbc()
 
 
 def message(name: str) -> Message:
