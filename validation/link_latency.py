@@ -28,7 +28,7 @@ from sms.link.real_time import running
 from sms.link.rig_link import RigLink
 from sms.link.virtual_rig import VirtualRig
 
-GROUP = "239.74.163.77"  #: of its own, so that a rig which runs on the usual bus is left alone
+CHANNEL = "239.74.163.2:43177"  #: a port of its own, so that a rig which runs on the usual bus is left alone
 MEDIAN_GOAL = 2e-3  #: s
 CORE_GOAL = 0.2
 START = 30.0  #: s; the longest that a rig's process may take to be heard
@@ -108,10 +108,10 @@ def on_virtual_bus(seconds: float) -> Measured:
 
 def on_multicast(seconds: float) -> Measured:
     """The rig as a process of its own."""
-    command = [sys.executable, "-m", "sms.cli", "can", "rig", "--channel", GROUP, "--quiet"]
+    command = [sys.executable, "-m", "sms.cli", "can", "rig", "--channel", CHANNEL, "--quiet"]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
         try:
-            with open_bus(BusAddress("udp_multicast", GROUP)) as bus, RigLink(bus) as link:
+            with open_bus(BusAddress("udp_multicast", CHANNEL)) as bus, RigLink(bus) as link:
                 link.listen(START)
                 time.sleep(0.5)
                 return stream(

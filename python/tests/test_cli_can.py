@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from sms.cli import app
 from sms.io import InputError
-from sms.io.can_logs import load_dbc, read_can_log
+from sms.io.can_frames import load_dbc
+from sms.io.can_logs import read_can_log
 from sms.io.tables import read_table
 from typer.testing import CliRunner, Result
 
@@ -110,6 +111,6 @@ def test_rig_lists_its_faults() -> None:
 
 def test_no_rig_on_the_bus_is_exit_code_1() -> None:
     pytest.importorskip("msgpack", reason="the bus over UDP needs the extra sms[can]")
-    result = run("get", "stroke", "--interface", "udp_multicast", "--channel", "239.74.163.99")
+    result = run("get", "stroke", "--interface", "udp_multicast", "--channel", "239.74.163.2:43199")
     assert result.exit_code == 1
     assert "no rig answers" in result.output

@@ -29,6 +29,17 @@ def test_a_bus_that_cannot_be_opened_is_one_sentence(address: BusAddress, said: 
     assert "\n" not in str(caught.value)
 
 
+def test_buses_over_udp_are_parted_by_their_port() -> None:
+    pytest.importorskip("msgpack", reason="the bus over UDP needs the extra sms[can]")
+    first, second = (BusAddress("udp_multicast", f"239.74.163.2:{port}") for port in (43301, 43302))
+    with open_bus(first) as bus, open_bus(first) as ear, open_bus(second) as other:
+        bus.send(data_frame(7))
+        heard = ear.recv(2.0)
+        assert heard is not None
+        assert heard.data[0] == 7
+        assert other.recv(0.05) is None
+
+
 def data_frame(number: int, identifier: int = 0x115, timestamp: float = 0.0) -> can.Message:
     return can.Message(
         arbitration_id=identifier,

@@ -57,7 +57,10 @@ def test_a_desk_that_drew_a_session_in_use_draws_again() -> None:
 
 
 def test_no_rig_is_one_sentence() -> None:
-    with desk_and_rig(faults=["bus_off@0s"]) as (link, _), pytest.raises(NotConnectedError, match="no rig answers"):
+    with (
+        desk_and_rig(faults=["bus_off@0s"]) as (link, _),
+        pytest.raises(NotConnectedError, match="no rig answers"),
+    ):
         link.connect()
 
 

@@ -108,7 +108,8 @@ def _read(rig: Rig, file: Path) -> Table:
 
     if not is_can_log(file):
         return read_table(file, rig.layout.delimiter, rig.layout.columns)
-    from sms.io.can_logs import load_dbc, read_can_log  # noqa: PLC0415 (and so does cantools)
+    from sms.io.can_frames import load_dbc  # noqa: PLC0415 (and so does cantools)
+    from sms.io.can_logs import read_can_log  # noqa: PLC0415
 
     wanted = {source.column: source.optional for source in rig.signals.values()}
     return read_can_log(file, load_dbc(rig.layout.dbc), wanted)

@@ -22,7 +22,7 @@ class BusAddress:
     """Which bus: an interface python-can knows, its channel, and the bit rate of a real one."""
 
     interface: str = "virtual"
-    channel: str | None = None  #: None: the usual one of the interface
+    channel: str | None = None  #: None: the usual one; of udp_multicast "239.74.163.2:43114"
     bitrate: int = BITRATE
 
     @property
@@ -49,6 +49,10 @@ class BusAddress:
             options["channel"] = "PCAN_USBBUS1"
         if self.interface == "udp_multicast":
             options |= {"hop_limit": 0, "fd": False}
+            # Linux gives a socket the frames of every group joined on its port: the port parts buses.
+            group, colon, port = str(options["channel"]).partition(":")
+            if colon and port.isdigit():
+                options |= {"channel": group, "port": int(port)}
         elif self.interface not in ("virtual", "socketcan"):  # socketcan: `ip link` sets it
             options["bitrate"] = self.bitrate
         return options

@@ -16,7 +16,7 @@ from cantools.database.can import Database, Message
 from cantools.database.namedsignalvalue import NamedSignalValue
 from crccheck.crc import Crc8SaeJ1850
 
-from sms.io.can_logs import load_dbc, no_value
+from sms.io.can_frames import load_dbc, no_value
 from sms.io.errors import InputError, did_you_mean
 
 HOST, CONTROLLER = "Host", "Controller"

@@ -1,0 +1,59 @@
+"""docs/can_tutorial.md: every command in it runs, in order, in one shell, and shows what the page says it shows."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PAGE = Path(__file__).parents[2] / "docs" / "can_tutorial.md"
+PORTS = {"43113": "43213", "43114": "43214"}  # a rig on the usual bus is left alone
+
+
+def commands(text: str) -> list[str]:
+    """The blocks of shell commands of the page."""
+    return re.findall(r"```sh\n(.*?)```", text, re.DOTALL)
+
+
+@pytest.mark.full
+def test_every_command_of_the_tutorial(tmp_path: Path) -> None:
+    pytest.importorskip("msgpack", reason="the bus over UDP needs the extra sms[can]")
+    script = "set -e\ntrap 'kill $(jobs -p)' EXIT\n" + "\n".join(commands(PAGE.read_text()))
+    for usual, own in PORTS.items():
+        script = script.replace(usual, own)
+    bin_folder = Path(sys.executable).parent
+    result = subprocess.run(
+        ["bash", "-c", script],
+        cwd=tmp_path,
+        env=os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}", "COLUMNS": "160"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "mode disabled" in result.stdout
+    assert "position_gain = 40" in result.stdout
+    assert result.stdout.count("set-points, one every 10 ms") == 2
+    legs = {
+        int(leg): (float(volts), float(pressure))
+        for leg, volts, pressure in re.findall(
+            r"leg (\d): valve +([+-]\d+) mV, lower chamber +([+-]\d+) kPa", result.stdout
+        )
+    }
+    assert sorted(legs) == [1, 2, 3]
+    assert legs[2][0] > 80.0
+    assert legs[2][1] < -20.0
+    for leg in (1, 3):
+        assert abs(legs[leg][0]) < 40.0
+        assert abs(legs[leg][1]) < 15.0
+
+
+def test_the_page_has_the_commands_it_is_about() -> None:
+    text = "\n".join(commands(PAGE.read_text()))
+    for command in ("rig", "monitor", "get", "set", "drive", "replay", "table"):
+        assert f"sms can {command}" in text
