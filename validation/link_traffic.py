@@ -23,7 +23,7 @@ from sms.link.codec import CONTROLLER, sent_by
 from sms.link.drive import drive
 from sms.link.logs import LogWriter, read_frames
 from sms.link.monitor import picture
-from sms.link.motion import DeckMotion
+from sms.link.motion import PlatformMotion
 from sms.link.real_time import SimulatedBus, SimulatedWorld
 from sms.link.rig_link import RigLink
 from sms.link.virtual_rig import VirtualRig
@@ -76,7 +76,7 @@ def record_minute(log: Path) -> float:
             time_ = np.arange(0.0, MINUTE, 0.05)
             roll = 0.04 * np.sin(2.0 * np.pi * 0.2 * time_)
             level = np.full(time_.size, 0.5)
-            drive(link, DeckMotion(time_, roll, 0.0 * roll, level + 0.3 * roll))
+            drive(link, PlatformMotion(time_, roll, 0.0 * roll, level + 0.3 * roll))
             frames = list(iter(lambda: ear.recv(0.0), None))
         begin = frames[0].timestamp
         length = world.clock()

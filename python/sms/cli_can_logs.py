@@ -25,8 +25,8 @@ from sms.io.errors import InputError
 def register(can_app: typer.Typer) -> None:
     """Add the commands."""
     can_app.command(
-        epilog="Example: **sms can record run.mf4 --seconds 60 --interface udp_multicast**. A rig file names the log as "
-        'a record, *file = "run.mf4"*, and its signals as columns: *extension_1*, *Setpoint.extension_setpoint_1*'
+        epilog="Example: **sms can record run.mf4 --seconds 60 --interface udp_multicast**. A rig file names the log "
+        'as a record, *file = "run.mf4"*, its signals as columns: *extension_1*, *Setpoint.extension_setpoint_1*.'
     )(record)
     can_app.command(
         epilog="Example: **sms can replay run.blf --interface udp_multicast --speed 2**, and **sms can monitor** "

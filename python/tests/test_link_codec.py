@@ -5,7 +5,6 @@ from __future__ import annotations
 import can
 import pytest
 from io_support import draw
-from sms import _core
 from sms.io import InputError
 from sms.link import codec
 from sms.link.codec import (
@@ -107,14 +106,3 @@ def test_every_command_is_protected_and_no_name_means_two_things() -> None:
 def test_times_are_those_of_the_bus_definition() -> None:
     assert codec.period("AttitudeSetpoint") == 0.01
     assert codec.time_out("ControllerHeartbeat") == 0.3
-
-
-@pytest.mark.skipif(not hasattr(_core, "command_crc"), reason="built without the firmware")
-def test_the_firmware_computes_the_same_checksum() -> None:
-    random = draw("test_the_firmware_computes_the_same_checksum")
-    for _ in range(200):
-        identifier, challenge = int(random.integers(0x800)), int(random.integers(256))
-        data = random.bytes(8)
-        assert _core.command_crc(identifier, challenge, data) == checksum(
-            identifier, challenge, data
-        )

@@ -10,7 +10,7 @@ from sms.io import InputError
 from sms.link.codec import checksum
 from sms.link.drive import InterruptedDriveError, drive
 from sms.link.faulty_bus import FaultyBus, FrameFaults
-from sms.link.motion import DeckMotion
+from sms.link.motion import PlatformMotion
 from sms.link.parameters import (
     is_default,
     known_parameters,
@@ -22,10 +22,10 @@ from sms.link.rig_link import LinkError, NotConnectedError, RefusedError, RigLin
 from sms.link.virtual_rig import FAULTS, VirtualRig, parse_fault
 
 
-def gentle(seconds: float = 3.0) -> DeckMotion:
+def gentle(seconds: float = 3.0) -> PlatformMotion:
     time = np.arange(0.0, seconds, 0.05)
     wave = np.sin(2.0 * np.pi * 0.25 * time)
-    return DeckMotion(time, 0.03 * wave, -0.02 * wave, 0.5 + 0.02 * wave)
+    return PlatformMotion(time, 0.03 * wave, -0.02 * wave, 0.5 + 0.02 * wave)
 
 
 def test_a_desk_takes_control_and_gives_it_back() -> None:

@@ -2,7 +2,7 @@
 
 Command frames carry an alive counter, the session of the desk that sends them, and a CRC-8 which
 also covers the identifier and the controller's challenge; docs/protocol.md says what each is for.
-The equations are the library's (cantools, crccheck): the firmware's codec is held against them.
+Signals are packed by cantools, by which the firmware's own codec is tested; the CRC is the core's.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from functools import cache
 import can
 from cantools.database.can import Database, Message
 from cantools.database.namedsignalvalue import NamedSignalValue
-from crccheck.crc import Crc8SaeJ1850
 
+from sms import _core
 from sms.io.can_frames import load_dbc, no_value
 from sms.io.errors import InputError, did_you_mean
 
@@ -61,8 +61,7 @@ def time_out(name: str) -> float:
 
 def checksum(identifier: int, challenge: int, data: bytes) -> int:
     """CRC-8/SAE-J1850 over identifier (low, high octet), challenge and octets 1 to 7 of a frame."""
-    covered = bytes([identifier & 0xFF, identifier >> 8, challenge]) + data[1:]
-    return int(Crc8SaeJ1850.calc(covered))
+    return _core.command_crc(identifier, challenge, data)
 
 
 def decode(frame: can.Message) -> tuple[str, dict[str, Value]] | None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.link.codec import period
-from sms.link.motion import MID_HEIGHT, DeckMotion
+from sms.link.motion import MID_HEIGHT, PlatformMotion
 from sms.link.rig_link import LinkError, RigLink
 
 Array = NDArray[np.float64]
@@ -81,7 +81,7 @@ class Stream:
 
 def drive(
     link: RigLink,
-    motion: DeckMotion,
+    motion: PlatformMotion,
     *,
     rate: float | None = None,
     law: str = "unchanged",

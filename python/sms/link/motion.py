@@ -22,7 +22,7 @@ _COLUMNS = {"time": "s", "roll": "rad", "pitch": "rad", "heave": "m", "height": 
 
 
 @dataclass(frozen=True, eq=False)
-class DeckMotion:
+class PlatformMotion:
     """Roll and pitch, rad, and height, m, over time, s: each (samples,)."""
 
     time: Array  #: from 0 on
@@ -44,7 +44,7 @@ class DeckMotion:
         pose = np.stack([self.roll, self.pitch, self.height], axis=-1)
         return np.asarray(PchipInterpolator(self.time, pose)(inside))
 
-    def scaled(self, scale: float, height: float = MID_HEIGHT) -> DeckMotion:
+    def scaled(self, scale: float, height: float = MID_HEIGHT) -> PlatformMotion:
         """The motion with its excursions from level at a height made larger or smaller."""
         return replace(
             self,
@@ -54,7 +54,7 @@ class DeckMotion:
         )
 
 
-def read_motion(file: Path, delimiter: str = "comma") -> DeckMotion:
+def read_motion(file: Path, delimiter: str = "comma") -> PlatformMotion:
     """Read a motion: columns time, roll, pitch and heave or height, named "roll [deg]".
 
     Heave is counted upwards from mid-height, 0.5 m. Columns that lack stand still. InputError for
@@ -78,7 +78,7 @@ def read_motion(file: Path, delimiter: str = "comma") -> DeckMotion:
     if height is None:
         height = MID_HEIGHT + (still if heave is None else heave)
     roll, pitch = columns["roll"], columns["pitch"]
-    return DeckMotion(
+    return PlatformMotion(
         time - time[0],
         still if roll is None else roll,
         still if pitch is None else pitch,
@@ -104,7 +104,7 @@ def _column(table: Table, wanted: str) -> Array | None:
     return None
 
 
-def check_motion(motion: DeckMotion, params: Params | None = None) -> None:
+def check_motion(motion: PlatformMotion, params: Params | None = None) -> None:
     """InputError, with the first place and a scale that fits, for a motion beyond the stroke."""
     params = Params() if params is None else params
     worst = _beyond(motion, params)
@@ -115,7 +115,7 @@ def check_motion(motion: DeckMotion, params: Params | None = None) -> None:
     raise InputError(f"the motion leaves the workspace {worst}; {remedy}")
 
 
-def _beyond(motion: DeckMotion, params: Params) -> str | None:
+def _beyond(motion: PlatformMotion, params: Params) -> str | None:
     """Where a motion first leaves the stroke, in words; None when it does not."""
     try:
         found = inverse_kinematics(motion.roll, motion.pitch, motion.height, params=params)
@@ -131,7 +131,7 @@ def _beyond(motion: DeckMotion, params: Params) -> str | None:
     )
 
 
-def _largest_scale(motion: DeckMotion, params: Params) -> float:
+def _largest_scale(motion: PlatformMotion, params: Params) -> float:
     """The largest scale, in hundredths and below 1, at which a motion fits; 0 when none does."""
     low, high = 0, 99
     while low < high:
