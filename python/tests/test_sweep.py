@@ -145,5 +145,5 @@ def test_at_the_prompt(tmp_path: Path) -> None:
     printed = run("sweep", "sweep.toml", "--out", "out", "--workers", "1", cwd=tmp_path).stdout
     assert "6 variants" in printed and "depends most on" in printed
     assert "Spearman" in (tmp_path / "out/sweep.html").read_text(encoding="utf-8")
-    nobody = command("sweep", "sweep.toml", "--scheduler", "nowhere", cwd=tmp_path)
-    refused(nobody, "--scheduler nowhere", "dask scheduler")
+    nobody = command("sweep", "sweep.toml", "--scheduler", "tcp://127.0.0.1:1", cwd=tmp_path)
+    refused(nobody, "--scheduler tcp://127.0.0.1:1", "dask scheduler")

@@ -14,6 +14,7 @@ import signal
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from itertools import islice
+from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import Any
 
@@ -157,7 +158,7 @@ def _on_cores(
     sweep: Sweep, variants: list[int], workers: int | None
 ) -> Iterator[tuple[int, dict[str, Any]]]:
     """Finished variants in the order they come, from processes of this machine."""
-    context = multiprocessing.get_context("spawn")
+    context = _start_of_workers()
     count = min(workers or len(os.sched_getaffinity(0)), len(variants))
     pool = ProcessPoolExecutor(count, mp_context=context, initializer=_quiet)
     waiting: dict[Any, int] = {}
@@ -173,6 +174,15 @@ def _on_cores(
                 waiting[_submit(pool, sweep, following)] = following
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _start_of_workers() -> BaseContext:
+    """Workers begin with this package loaded once, and with nothing of this process's threads."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["sms.sweep.run"])
+    return context
 
 
 def _submit(pool: ProcessPoolExecutor, sweep: Sweep, variant: int) -> Any:
@@ -196,7 +206,7 @@ def _on_cluster(
             'a Dask cluster needs one more package: pip install "sms[cluster]"'
         ) from None
     try:
-        client = Client(scheduler, timeout=10)  # type: ignore[no-untyped-call]
+        client = Client(scheduler, timeout=5)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as problem:
         raise InputError(
             f"--scheduler {scheduler}: no Dask scheduler answers there ({problem}); start one with "
