@@ -46,7 +46,7 @@ def comparison_html(comparison: Comparison) -> str:
         else ""
     )
     lead = (
-        f"{comparison.simulated.name} against {comparison.measured.name}, "
+        f"{comparison.simulated} against {comparison.measured}, "
         f"{comparison.time[0]:.2f} to {comparison.time[-1]:.2f} s.{shift}"
     )
     cells = [[esc(cell) for cell in row] for row in table_rows(comparison)]
@@ -103,9 +103,11 @@ def _figures(comparison: Comparison, signal: Signal) -> list[Figure]:
     gains, phases, coherences = [], [], []
     for text, response in responses.items():
         shown = _coherent(response)
+        used = slice(0, 1 + int(np.flatnonzero(np.isfinite(shown)).max(initial=0)))
         decibels = 20.0 * np.log10(np.maximum(response.gain, 1e-12))
-        gains.append(Line(text, response.frequency, decibels + shown))
-        phases.append(Line(text, response.frequency, np.degrees(response.phase) + shown))
+        gains.append(Line(text, response.frequency[used], (decibels + shown)[used]))
+        phase = np.degrees(response.phase) + shown
+        phases.append(Line(text, response.frequency[used], phase[used]))
         coherences.append(Line(text, response.frequency, response.coherence))
     note = f"Shown where the coherence is above {_COHERENT:g}."
     return [
