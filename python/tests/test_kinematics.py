@@ -281,3 +281,24 @@ def test_every_status_has_an_exception_and_all_are_value_errors() -> None:
         sms.NotConvergedError,
     ):
         assert issubclass(error, sms.StatusError) and issubclass(error, ValueError)
+
+
+def test_points_of_the_platform_are_carried_along() -> None:
+    params = sms.Params()
+    joints = np.array(
+        [[params[f"platform_joint_{i}_{axis}"] for axis in "xyz"] for i in range(1, 7)]
+    )
+    base = np.array([[params[f"base_joint_{i}_{axis}"] for axis in "xyz"] for i in range(1, 7)])
+    rest = sms.forward_kinematics([0.0, 0.0, 0.0])
+    tilted = sms.inverse_kinematics(0.1, -0.05, 0.5)
+    poses = np.array(
+        [
+            [rest.roll, rest.pitch, rest.height, rest.yaw, rest.x, rest.y],
+            [0.1, -0.05, 0.5, tilted.yaw, tilted.x, tilted.y],
+        ],
+        dtype=np.float64,
+    )
+    carried = sms._core.carried_points(params, poses, joints).reshape(2, 6, 3)
+    assert carried[0] == pytest.approx(joints, abs=1e-12)
+    lengths = sms.six_leg_inverse(*poses[1])
+    assert np.linalg.norm(carried[1] - base, axis=1) == pytest.approx(lengths, abs=1e-14)

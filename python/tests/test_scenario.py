@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -183,7 +184,7 @@ def test_real_waves_are_followed_within_half_a_degree(monkeypatch: pytest.Monkey
     asked = load_scenario(SCENARIOS / "waves_3012.toml")
     assert asked.deck_motion is not None
     part = asked.deck_motion.model_copy(update={"first": "230 s", "last": "250 s"})
-    object.__setattr__(asked, "deck_motion", part)
+    asked = replace(asked, deck_motion=part)
     sent = command_of(asked)
     assert sent.motion is not None and not sent.motion.cuts
     found = findings_of(asked, sent, run_scenario(asked, sent))
@@ -334,12 +335,17 @@ def test_ctrl_c_at_the_prompt(tmp_path: Path) -> None:
 # ---- the documentation ----
 
 
-def test_the_documented_example_runs_and_every_key_is_documented(tmp_path: Path) -> None:
+def test_the_documented_examples_run_and_every_key_is_documented(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     text = DOCS.read_text(encoding="utf-8")
     example = text.partition("<!-- a test runs this example -->\n```toml\n")[2].partition("```")[0]
     scenario(tmp_path, example.replace('"20 s"', '"11 s"'))
     run("simulate", "scenario.toml", "--out", "run", cwd=tmp_path)
     assert (tmp_path / "run/run.csv").is_file()
+    monkeypatch.chdir(tmp_path)
+    exec(text.partition("```python\n")[2].partition("```")[0], {})
+    assert "Roll follows its command" in capsys.readouterr().out
     tables = (ScenarioTable, ModelTable, ControllerTable, StartTable, OutputTable, SeaTable)
     for table in (*tables, DeckMotionTable, *EXCITATIONS.values()):
         for key in table.model_fields:
