@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'VirtualRig', 'air_spring', 'alpha_beta', 'build_info', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'TankProblem', 'VirtualRig', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -367,6 +367,30 @@ class Params:
     def command_offset(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def component_conductance(self) -> float:
+        """
+        sonic conductance of the component under test, C (eq. 5.8) [m^3/(s Pa)]; assumed, a start: what the test is made for
+        """
+    @component_conductance.setter
+    def component_conductance(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def component_critical_ratio(self) -> float:
+        """
+        critical pressure ratio of the component under test, b (eq. 5.8) [1]; assumed, a start: what the test is made for
+        """
+    @component_critical_ratio.setter
+    def component_critical_ratio(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def component_subsonic_index(self) -> float:
+        """
+        subsonic index of the component under test, m (eq. 5.8) [1]; assumed, a start: what the test is made for
+        """
+    @component_subsonic_index.setter
+    def component_subsonic_index(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def compression_heat_ratio(self) -> float:
         """
         ratio of heat capacities for the piston's work, alpha [1]; published, section 4.1.3.2.1
@@ -701,6 +725,22 @@ class Params:
         """
     @moving_mass.setter
     def moving_mass(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def opening_duration(self) -> float:
+        """
+        time over which the valve opens [s]; derived: half a period of the spool's 65 Hz
+        """
+    @opening_duration.setter
+    def opening_duration(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def opening_time(self) -> float:
+        """
+        when the valve begins to open, on the record's clock [s]; assumed: set by the test
+        """
+    @opening_time.setter
+    def opening_time(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def outflow_heat_ratio(self) -> float:
@@ -1247,6 +1287,14 @@ class Params:
     def sensor_gain_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def sensor_gain_tank_pressure(self) -> float:
+        """
+        relative gain error of the tank's pressure sensor [1]; neutral
+        """
+    @sensor_gain_tank_pressure.setter
+    def sensor_gain_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def sensor_offset_chamber_pressure_lower(self) -> float:
         """
         zero error of the lower chamber's pressure sensor [Pa]; neutral
@@ -1277,6 +1325,14 @@ class Params:
         """
     @sensor_offset_rod_force.setter
     def sensor_offset_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_offset_tank_pressure(self) -> float:
+        """
+        zero error of the tank's pressure sensor [Pa]; neutral
+        """
+    @sensor_offset_tank_pressure.setter
+    def sensor_offset_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def spool_cubic_0(self) -> float:
@@ -1333,6 +1389,14 @@ class Params:
         """
     @spool_linear_1.setter
     def spool_linear_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def spool_position(self) -> float:
+        """
+        where the spool is held during a flow test, from its pneumatic centre; felt by the classic law only [m]; assumed: set by the test
+        """
+    @spool_position.setter
+    def spool_position(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def stiction_force(self) -> float:
@@ -1399,6 +1463,38 @@ class Params:
     def supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def tank_initial_pressure(self) -> float:
+        """
+        pressure in the tank before the valve opens, absolute [Pa]; assumed: set by the test
+        """
+    @tank_initial_pressure.setter
+    def tank_initial_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def tank_line_resistance(self) -> float:
+        """
+        line_pressure_loss: the sensor reads this more than the tank per mass flow into it [Pa s/kg]; neutral (section 5.4.2: the sensors sit in the lines)
+        """
+    @tank_line_resistance.setter
+    def tank_line_resistance(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def tank_pressure_ceiling(self) -> float:
+        """
+        pressure_sensor_ceiling: the tank's pressure sensor reads no more, absolute [Pa]; neutral
+        """
+    @tank_pressure_ceiling.setter
+    def tank_pressure_ceiling(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def tank_pressure_floor(self) -> float:
+        """
+        pressure_sensor_floor: the tank's pressure sensor reads no less, absolute [Pa]; neutral (about 100 mbar gauge in section 5.3.1)
+        """
+    @tank_pressure_floor.setter
+    def tank_pressure_floor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def tank_volume(self) -> float:
         """
         volume of the tank, V_c [m^3]; published, section 5.4.3
@@ -1421,6 +1517,14 @@ class Params:
         """
     @thermocouple_gain.setter
     def thermocouple_gain(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def thermocouple_time_constant(self) -> float:
+        """
+        thermocouple_lag: the thermocouple follows the air with this time constant [s]; neutral (0.4 to 6 s in the literature, section 5.2.2)
+        """
+    @thermocouple_time_constant.setter
+    def thermocouple_time_constant(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def top_frame_cog_x(self) -> float:
@@ -1834,6 +1938,17 @@ class Problem:
 class CylinderProblem(Problem):
     def __init__(self, records: collections.abc.Sequence[CylinderRecord]) -> None:
         ...
+class TankProblem(Problem):
+    """
+    One charge or discharge of a tank: time s, pressure Pa absolute as read, temperature K of a thermocouple and supply Pa absolute where they were measured; arrays (n,). Residuals: pressures, then temperatures.
+    """
+    def __init__(self, *, time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], charge: bool, temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., supply: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., law: str = 'iso', heat: str = 'polytropic') -> None:
+        ...
+    @property
+    def step(self) -> float:
+        """
+        s, of the integration
+        """
 class Fit:
     """
     The result of a least-squares fit.
@@ -1841,6 +1956,11 @@ class Fit:
     @property
     def at_bound(self) -> list[bool]:
         ...
+    @property
+    def condition(self) -> float:
+        """
+        condition number of the weighted jacobian with columns of length one
+        """
     @property
     def converged(self) -> bool:
         ...
@@ -1875,6 +1995,10 @@ def air_spring(params: Params, mean_pressure: typing.SupportsFloat | typing.Supp
 def alpha_beta(measured: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], dt: typing.SupportsFloat | typing.SupportsIndex, alpha: typing.SupportsFloat | typing.SupportsIndex, beta: typing.SupportsFloat | typing.SupportsIndex, value: typing.SupportsFloat | typing.SupportsIndex, rate: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     (values, rates), each (n,), of the alpha-beta filter that starts at value and rate.
+    """
+def carried_points(params: Params, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], at_rest: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    (n, 6) poses, (k, 3) points of the platform in the rest pose -> (n, 3 k) where they are, m, world axes.
     """
 def chamber_energy_rates(params: Params, chamber: str, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], inflow: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], outflow: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], inflow_temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
@@ -1944,9 +2068,9 @@ def firmware_settings() -> list[FirmwareSetting]:
     """
     The list of settings.def; parameter_index on the bus is that of params.def below it.
     """
-def fit(problem: Problem, start: Params, free: collections.abc.Sequence[tuple[str, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex]], weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., max_iterations: typing.SupportsInt | typing.SupportsIndex = 100) -> Fit:
+def fit(problem: Problem, start: Params, free: collections.abc.Sequence[tuple[str, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex]], weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., max_iterations: typing.SupportsInt | typing.SupportsIndex = 100, tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-12, huber: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> Fit:
     """
-    Least squares over the parameters free = [(name, lower, upper, pull), ...]; ValueError for a bad start.
+    Least squares over the parameters free = [(name, lower, upper, pull), ...], by Huber's loss beyond `huber` weighted units; ValueError for a bad start and for a parameter that the records do not feel.
     """
 def force_balance(params: Params, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], drive: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], deflection: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] = 0.0, law: str = 'acceleration_dependent') -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

@@ -50,7 +50,7 @@ SEA_STATES: dict[int, SeaState] = {
     3: SeaState(0.88, 7.5),
     4: SeaState(1.88, 8.8),
 }
-"""Heights and periods of the open North Atlantic (STANAG 4194); those of 0 and 1 assumed."""
+"""Heights: the middle of each range of the WMO code of sea states. Periods: assumed, open ocean."""
 
 
 @dataclass(frozen=True, slots=True)
