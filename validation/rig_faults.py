@@ -553,7 +553,8 @@ application over the simulated plant, while it tracks a motion of 2.3 deg roll, 
 desk on python-can's virtual bus, in simulated time; each with {seeds} seeds. The controller alone, with the limits of
 time that it has to keep: [faults.md](faults.md).
 
-- *detected*: from the fault to the first millisecond in which the controller says it; median and worst.
+- *detected*: from the fault to the first millisecond in which the controller says it; median and worst. Where
+  frames are disturbed that includes the time until the first command frame is hit.
 - *pistons*: the extensions reached in the whole trial, with the way back, of a stroke of 0 to 400 mm; the fastest.
 - A row without a remark passed all its checks: the fault is said, the mode is the one given, no piston touched an end
   or was faster than {fastest:g} m/s, and the way back led to tracking.

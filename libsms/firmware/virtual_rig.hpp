@@ -137,7 +137,7 @@ class VirtualRig {
 
   double noise(double deviation) { return deviation > 0.0 ? deviation * normal_(random_) : 0.0; }
 
-  Word counts(double value) const { return Word(std::min(std::max(std::floor(value + 0.5), 0.0), kFull)); }
+  static Word counts(double value) { return Word(std::min(std::max(std::floor(value + 0.5), 0.0), kFull)); }
 
   void fill_inputs() {
     for (int i = 0; i < SMS_LEGS; ++i) {
@@ -152,7 +152,7 @@ class VirtualRig {
                                          p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper));
     }
     const double supply = plant_.run.state.actuator[0].supply_pressure;
-    in_.converted[3 * SMS_LEGS] = pressure_counts(supply - board_.ambient_pressure);
+    in_.converted[SMS_CONVERTED - 1] = pressure_counts(supply - board_.ambient_pressure);
     in_.enabled = is_on(RigFault::enable_open) ? 0 : 1;
     in_.bus_off = is_on(RigFault::bus_off) ? 1 : 0;
     in_.missed_ticks = is_on(RigFault::loop_overrun) ? 1 : 0;

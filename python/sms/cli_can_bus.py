@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -48,12 +49,26 @@ def open_address(interface: str, channel: str | None, bitrate: int) -> Iterator[
     from sms.link.bus import BusAddress, open_bus  # noqa: PLC0415
     from sms.link.rig_link import LinkError  # noqa: PLC0415
 
-    with open_bus(BusAddress(interface, channel, bitrate)) as bus:
+    with open_bus(BusAddress(interface, channel, bitrate)) as bus, _ended_like_ctrl_c():
         try:
             yield bus
         except LinkError as problem:
             print(f"sms: {problem}", file=sys.stderr)
             raise typer.Exit(FAILED) from None
+
+
+@contextmanager
+def _ended_like_ctrl_c() -> Iterator[None]:
+    """A command that is ended (`kill`) finishes as after Ctrl-C: a log is closed, a platform levelled."""
+
+    def interrupt(_signal: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 @contextmanager

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +16,7 @@ from sms.io import InputError
 from sms.io.can_frames import load_dbc
 from sms.io.can_logs import read_can_log
 from sms.io.tables import read_table
+from sms.link.logs import read_frames
 from typer.testing import CliRunner, Result
 
 COMMANDS = ("monitor", "drive", "record", "replay", "get", "set", "rig")
@@ -83,6 +88,22 @@ def test_a_recording_is_a_record(tmp_path: Path) -> None:
     assert whole.names == written.names
     for column in range(len(whole.names)):
         np.testing.assert_array_equal(whole.numbers(column)[0], written.numbers(column)[0])
+
+
+def test_a_recording_that_is_ended_is_whole(tmp_path: Path) -> None:
+    log = tmp_path / "run.blf"
+    command = [sys.executable, "-m", "sms.cli", "can", "record", str(log)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE) as process:
+        assert process.stderr is not None
+        assert b"virtual rig" in process.stderr.readline()
+        deadline = time.monotonic() + 30.0
+        while not list(tmp_path.glob(".run.*")) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(30.0) == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["run.blf"]
+    assert sum(1 for _ in read_frames(log)) > 50
 
 
 def test_what_cannot_be_replayed_is_said(tmp_path: Path) -> None:

@@ -147,6 +147,19 @@ def test_a_motion_is_driven_and_followed() -> None:
     assert said[-1] == ("returning", 1.0)
 
 
+def test_a_listener_sees_every_frame_of_both_sides_once() -> None:
+    with desk_and_rig() as (link, world):
+        seen: list[tuple[float, int]] = []
+        link.listener = lambda frame: seen.append((frame.timestamp, frame.arbitration_id))
+        link.connect()
+        link.wait(lambda: False, 1.0)
+        times = [time for time, _ in seen]
+        assert times == sorted(times)
+        numbers = [number for _, number in seen]
+        assert numbers.count(0x90) == world.machine.frames_in
+        assert numbers.count(0x110) == link.counts[0x110]
+
+
 def test_a_drive_that_the_rig_leaves_says_why() -> None:
     with desk_and_rig(faults=["sensor_broken:2@6s"]) as (link, _):
         link.connect()

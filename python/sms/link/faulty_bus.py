@@ -76,17 +76,23 @@ class FaultyBus(can.BusABC):
         self._befall(msg, self._out, self._sent)
         self._flush(timeout)
 
-    def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
-        self._flush(None)
-        frame = self.inner.recv(self._until_due(timeout))
-        while frame is not None:  # all that is there, so that late ones find their place
-            if not self.faults.bus_off:
-                self._befall(frame, self._in, self._received)
-            frame = self.inner.recv(0.0)
-        self._flush(None)
-        if self._in and self._in[0][0] <= self.clock():
-            return heapq.heappop(self._in)[2], False
-        return None, False
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        """The next frame that gets through, or None after so long on this bus's clock."""
+        end = None if timeout is None else self.clock() + timeout
+        while True:
+            self._flush(None)
+            frame = self.inner.recv(
+                self._until_due(None if end is None else max(0.0, end - self.clock()))
+            )
+            while frame is not None:  # all that is there, so that late ones find their place
+                if not self.faults.bus_off:
+                    self._befall(frame, self._in, self._received)
+                frame = self.inner.recv(0.0)
+            self._flush(None)
+            if self._in and self._in[0][0] <= self.clock():
+                return heapq.heappop(self._in)[2]
+            if end is not None and self.clock() >= end:
+                return None
 
     def shutdown(self) -> None:
         """Close the wrapped bus too."""

@@ -120,16 +120,15 @@ class SimulatedBus(can.BusABC):
         """Send without letting time pass."""
         self.inner.send(msg, timeout)
 
-    def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        """The next frame, or None after so much simulated time (python-can's own would wait for real time)."""
         end = None if timeout is None else self.world.clock() + timeout
-        while True:
-            frame = self.inner.recv(0.0)
-            if frame is not None:
-                frame.timestamp = self.world.clock()
-                return frame, False
+        while (frame := self.inner.recv(0.0)) is None:
             if end is not None and self.world.clock() >= end:
-                return None, False
+                return None
             self.world.step()
+        frame.timestamp = self.world.clock()
+        return frame
 
     def shutdown(self) -> None:
         """Close the wrapped bus too."""

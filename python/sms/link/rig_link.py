@@ -20,6 +20,7 @@ import can
 from sms import _core
 from sms.link.codec import (
     CONTROLLER,
+    HOST,
     Sender,
     Value,
     decode,
@@ -75,10 +76,12 @@ class RigLink:
         self.sender = Sender(session or random.choice(SESSIONS))
         self.counts: Counter[int] = Counter()  #: frames received, by identifier
         self.events: list[Reading] = []  #: not yet taken by `take_events`
-        self.listener: Callable[[can.Message], None] | None = None  #: sees every frame received
+        self.listener: Callable[[can.Message], None] | None = (
+            None  #: sees every frame on the bus, once
+        )
         self._latest: dict[int, tuple[float, can.Message]] = {}
         self._next_heartbeat: float | None = None
-        self._from_rig = sent_by(CONTROLLER)
+        self._from_rig, self._from_desk = sent_by(CONTROLLER), sent_by(HOST)
         self._event = message("Event").frame_id
         self._heartbeat = message("ControllerHeartbeat").frame_id
 
@@ -149,7 +152,7 @@ class RigLink:
 
     def _take(self, frame: can.Message, now: float) -> None:
         number = frame.arbitration_id
-        if self.listener is not None:
+        if self.listener is not None and not self._is_own(frame):
             self.listener(frame)
         if number not in self._from_rig or frame.is_error_frame:
             return
@@ -159,6 +162,11 @@ class RigLink:
             self.events.append(Reading("Event", now, decoded[1]))
         elif number == self._heartbeat and (decoded := decode(frame)) is not None:
             self.sender.challenge = int(decoded[1]["challenge"])
+
+    def _is_own(self, frame: can.Message) -> bool:
+        """Whether a frame is the echo of one that this desk sent, as some interfaces give it."""
+        session = frame.data[1] >> 4 if len(frame.data) > 1 else 0
+        return frame.arbitration_id in self._from_desk and session == self.sender.session
 
     # ---- control -----------------------------------------------------------------------------------------------
 
@@ -212,6 +220,9 @@ class RigLink:
             raise BusError(
                 f"the bus takes no frame ({problem}); check cable, termination and bit rate"
             ) from None
+        if self.listener is not None:
+            frame.timestamp = time.time() if self.clock is time.monotonic else self.clock()
+            self.listener(frame)
 
     def request_mode(
         self, mode: str, seconds: float = 0.5, law: str = "unchanged", acknowledge: bool = False
