@@ -3,7 +3,13 @@
 
 namespace {
 
-sms::firmware::Application application;
+// Not constructed before main(): reset() does that in place, so that the defaults stand in the flash once.
+union Memory {
+  Memory() {}
+  sms::firmware::Application application;
+};
+
+Memory memory;
 sms_hardware_inputs inputs;
 sms_hardware_outputs outputs;
 
@@ -11,9 +17,9 @@ sms_hardware_outputs outputs;
 
 int main() {
   const sms::ResetCause cause = sms::ResetCause(int(hardware_start()));
-  sms::firmware::reset(application, cause, hardware_seed());
+  sms::firmware::reset(memory.application, cause, hardware_seed());
   while (hardware_read(&inputs) != 0) {
-    sms::firmware::tick(application, inputs, outputs);
+    sms::firmware::tick(memory.application, inputs, outputs);
     hardware_write(&outputs);
   }
 }

@@ -21,8 +21,9 @@ uint32_t begin;
 FromTarget message;
 
 void paint_stack() {
-  uint32_t here;
-  for (uint32_t* at = &__stack_limit; at < &here - 64; ++at) {
+  uint32_t* here;
+  __asm__ volatile("mov %0, sp" : "=r"(here));
+  for (volatile uint32_t* at = &__stack_limit; at < here; ++at) {  // volatile: no call whose frame it would paint over
     *at = kPaint;
   }
 }

@@ -15,13 +15,15 @@ strict="-Wall -Wextra -Wconversion -Wfloat-equal -Wshadow -Wdouble-promotion -We
 includes="-I$firmware -I$libsms/include -isystem $eigen"
 sources="application command console settings sms_firmware telemetry"
 
-# shellcheck disable=SC2086  # lists of words
+# shellcheck disable=SC2086  # lists of words, from here on
 for source in $sources main; do
-  arm-none-eabi-g++ $target -std=c++14 -O2 $bare $strict $includes -fstack-usage -c "$firmware/$source.cpp" \
+  optimise=-O2
+  case $source in console | settings) optimise=-Os ;; esac
+  ${CMAKE_CXX_COMPILER_LAUNCHER-} arm-none-eabi-g++ $target -std=c++14 $optimise $bare $strict $includes -fstack-usage -c "$firmware/$source.cpp" \
     -o "$out/$source.app.arm.o"
 done
 for source in board_memory board_lockstep count_application; do
-  arm-none-eabi-g++ $target -std=c++14 -O2 $bare $strict $includes -I"$here" -c "$here/$source.cpp" \
+  ${CMAKE_CXX_COMPILER_LAUNCHER-} arm-none-eabi-g++ $target -std=c++14 -O2 $bare $strict $includes -I"$here" -c "$here/$source.cpp" \
     -o "$out/$source.arm.o"
 done
 
@@ -33,19 +35,16 @@ rm -f "$out/libsms_firmware.arm.a"
 # shellcheck disable=SC2086
 arm-none-eabi-ar rcs "$out/libsms_firmware.arm.a" $objects
 
-# link NAME SPECS OBJECT...
+# link NAME LIBRARY STARTUP OBJECT...
 link() {
-  name=$1 specs=$2
-  shift 2
-  # shellcheck disable=SC2086
+  name=$1 specs=$2 startup=$3
+  shift 3
   arm-none-eabi-gcc $target --specs=$specs -nostartfiles -T "$here/mps2.ld" -Wl,--gc-sections \
-    -Wl,--no-warn-rwx-segments "$(arm-none-eabi-gcc $target -print-file-name=rdimon-crt0.o)" "$out/startup.o" "$@" \
-    "$out/libsms_firmware.arm.a" "$out/libsmsf.arm.a" -lm -Wl,-Map="$out/$name.map" -o "$out/$name.elf"
+    -Wl,--no-warn-rwx-segments $startup "$@" "$out/libsms_firmware.arm.a" "$out/libsmsf.arm.a" -lm \
+    -Wl,-Map="$out/$name.map" -o "$out/$name.elf"
 }
-link lockstep rdimon.specs "$out/main.app.arm.o" "$out/board_lockstep.arm.o"
-link count_application rdimon.specs "$out/count_application.arm.o"
-# The image of a board: nothing of a debugger in it.
-# shellcheck disable=SC2086
-arm-none-eabi-gcc $target --specs=nano.specs -nostartfiles -T "$here/mps2.ld" -Wl,--gc-sections \
-  -Wl,--no-warn-rwx-segments "$out/startup_bare.o" "$out/main.app.arm.o" "$out/board_memory.arm.o" \
-  "$out/libsms_firmware.arm.a" -lm -Wl,-Map="$out/image.map" -o "$out/image.elf"
+arm-none-eabi-gcc $target -O2 -c "$here/startup_bare.c" -o "$out/startup_bare.o"
+crt0=$(arm-none-eabi-gcc $target -print-file-name=rdimon-crt0.o)
+link count_application rdimon.specs "$crt0 $out/startup.o" "$out/count_application.arm.o"
+link lockstep nano.specs "$out/startup_bare.o" "$out/main.app.arm.o" "$out/board_lockstep.arm.o"
+link image nano.specs "$out/startup_bare.o" "$out/main.app.arm.o" "$out/board_memory.arm.o"
