@@ -2,7 +2,7 @@
 
     ./dev firmware
 
-Exit code 1 when a goal is missed, when a symbol is called that libsms/firmware_symbols.txt does not list, or when a
+Then the application and the processor in the loop: validation/firmware_application.py. Exit code 1 when a goal is missed, when a symbol is called that libsms/firmware_symbols.txt does not list, or when a
 kinematic result differs from the host's in any bit.
 """
 
@@ -16,6 +16,8 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
+
+from validation import firmware_application
 
 ROOT = Path(__file__).parents[1]
 OUT = ROOT / "build" / "firmware"
@@ -123,6 +125,7 @@ def main() -> int:
         failures.append(
             f"called but not in {SYMBOLS.relative_to(ROOT)}: {' '.join(sorted(strangers))}"
         )
+    failures += firmware_application.check(console, allowed_symbols())
     for failure in failures:
         console.print(f"[red]{failure}[/red]")
     return 1 if failures else 0
