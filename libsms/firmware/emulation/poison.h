@@ -16,6 +16,8 @@
 #include "sms/forward_kinematics.hpp"
 #include "sms/inverse_kinematics.hpp"
 
+#undef CHAR_BIT
+#undef UCHAR_MAX
 #pragma GCC poison uint8_t int8_t uint_least8_t int_least8_t uint_fast8_t int_fast8_t CHAR_BIT UCHAR_MAX
 #pragma GCC poison double long_double
 #pragma GCC poison malloc calloc realloc free printf snprintf fopen abort exit
