@@ -134,7 +134,7 @@ void resolve_setpoint(Application& app) {
   }
   if (t.result == SetpointResult::not_a_number) {
     report(app.faults, Fault::setpoint_not_a_number);
-  } else if (t.result != SetpointResult::accepted) {
+  } else if (t.result != SetpointResult::accepted && t.result != SetpointResult::unconfirmed) {
     report(app.faults, Fault::setpoint_out_of_workspace);
   }
 }
@@ -241,7 +241,28 @@ void follow_pose(Application& app) {
 
 // ---- parameters ----
 
+namespace {
+
+// What no bound of a single parameter can say: sensors that are calibrated between two places, and the period that the
+// times of the application are counted in.
+bool is_possible(const Parameters& p) {
+  const Settings& s = p.settings;
+  const float span[SMS_LEGS] = {s.calibration_extended_1 - s.calibration_retracted_1,
+                                s.calibration_extended_2 - s.calibration_retracted_2,
+                                s.calibration_extended_3 - s.calibration_retracted_3};
+  bool possible = p.machine.control_period > 0.999e-3f && p.machine.control_period < 1.001e-3f;
+  for (const float counts : span) {
+    possible = possible && (counts > 100.0f || counts < -100.0f);
+  }
+  return possible;
+}
+
+}  // namespace
+
 sms_status derive(const Parameters& p, Derived& derived) {
+  if (!is_possible(p)) {
+    return SMS_OUT_OF_RANGE;
+  }
   Derived d;
   d.geometry = make_geometry(p.machine);
   Vec3<float> level;
@@ -368,6 +389,16 @@ void take_attitude_setpoint(Application& app, const float (&attitude)[3], Word a
   t.waiting = true;
   for (int i = 0; i < 3; ++i) {
     t.wanted[i] = attitude[i];
+  }
+}
+
+void postpone_setpoint(Application& app, Word alive, Word session) {
+  Target& t = app.target;
+  if (!t.waiting) {
+    t.result = SetpointResult::unconfirmed;
+    t.alive = alive;
+    t.session = session;
+    t.waiting = true;
   }
 }
 

@@ -116,6 +116,8 @@ void request_law(Application& app, ControlLaw law);
 void acknowledge(Application& app);
 void take_extension_setpoint(Application& app, const float (&extension)[SMS_LEGS], Word alive, Word session);
 void take_attitude_setpoint(Application& app, const float (&attitude)[3], Word alive, Word session);
+// One that the next has to confirm; only answered.
+void postpone_setpoint(Application& app, Word alive, Word session);
 WriteAccess write_access(const Application& app);
 // Puts the staged parameters into effect, or says why not.
 ParameterResult commit_parameters(Application& app, Word count);

@@ -199,6 +199,13 @@ void receive_one(Application& app, const Frame& f, sms_hardware_outputs& out) {
     refuse(app, Reason::none);
     return;
   }
+  const bool setpoint = f.identifier == Word(frame::AttitudeSetpoint::identifier) ||
+                        f.identifier == Word(frame::ExtensionSetpoint::identifier);
+  if (setpoint && !is_plausible(link, f)) {
+    postpone_setpoint(app, alive_of(f), session);
+    refuse(app, Reason::none);
+    return;
+  }
   const Word lost = link.lost;
   const bool in_sequence = check_alive(link, number, alive_of(f), app.now);
   if (!in_sequence || link.lost != lost) {

@@ -15,7 +15,8 @@ enum {
   synchronise_after = 500,  // ms without an accepted frame of that identifier
   host_timeout = 300,       // ms without an accepted frame
   setpoint_timeout = 100,   // ms without a set-point
-  command_identifiers = 10
+  command_identifiers = 10,
+  largest_jump = 3000  // raw: 30 mrad, 30 mm
 };
 
 // Alive counter of one identifier.
@@ -27,11 +28,18 @@ struct Alive {
   Long when;       // ms, of the last accepted frame
 };
 
+// The last accepted set-point of one identifier, as its three raw words, and one that was too far from it.
+struct Neighbourhood {
+  bool known, waiting;
+  Word last[3], candidate[3];
+};
+
 struct CommandLink {
   Word challenge;
   Word session;  // in control
   Long heard;    // ms, its last accepted frame
   Alive alive[command_identifiers];
+  Neighbourhood setpoint[2];  // attitude, extension
   // counters since reset, of 16 bits
   Word lost, corrupted, out_of_sequence, refused;
 };
@@ -95,12 +103,45 @@ inline bool check_alive(CommandLink& link, int number, Word alive, Long now) {
   return true;
 }
 
+// Whether two raw words are no further apart than a host moves a set-point from one frame to the next; the signed ones
+// run over like the others.
+inline bool is_near(const Word (&a)[3], const Word (&b)[3]) {
+  bool near_all = true;
+  for (int i = 0; i < 3; ++i) {
+    const Word apart = Word((a[i] - b[i]) & 0xFFFFu);
+    near_all = near_all && (apart <= Word(largest_jump) || apart >= Word(0x10000u - Word(largest_jump)));
+  }
+  return near_all;
+}
+
+// A set-point far from the last one waits until the next one confirms it: a frame that passed its check by chance moves
+// nothing. One that holds no value goes through, to be refused as such.
+inline bool is_plausible(CommandLink& link, const Frame& f) {
+  Neighbourhood& n = link.setpoint[f.identifier == Word(frame::AttitudeSetpoint::identifier) ? 0 : 1];
+  Word raw[3];
+  bool has_value = true;
+  for (int i = 0; i < 3; ++i) {
+    raw[i] = Word((f.octet[2 + 2 * i] & 0xFFu) | ((f.octet[3 + 2 * i] & 0xFFu) << 8));
+    has_value = has_value && raw[i] != 0xFFFFu && raw[i] != 0x8000u;
+  }
+  const bool plausible = (n.known && is_near(raw, n.last)) || (n.waiting && is_near(raw, n.candidate));
+  n.waiting = has_value && !plausible;
+  n.known = n.known || plausible;
+  for (int i = 0; has_value && i < 3; ++i) {
+    (plausible ? n.last : n.candidate)[i] = raw[i];
+  }
+  return plausible || !has_value;
+}
+
 // Somebody takes control: all counters start anew.
 inline void take_control(CommandLink& link, Word session, Long now) {
   link.session = session;
   link.heard = now;
   for (Alive& a : link.alive) {
     a = {false, false, 0, 0, now};
+  }
+  for (Neighbourhood& n : link.setpoint) {
+    n.known = n.waiting = false;
   }
 }
 

@@ -180,6 +180,11 @@ TEST_CASE("application: a set of parameters takes effect whole, or not at all") 
     b.host.send(sms::frame::ParameterWrite{0, 0, stroke, 0.1f});
     b.host.send(sms::frame::ParameterCommit{0, 0, 0, 2});
   }
+  SUBCASE("a sensor would have no span") {
+    begin();
+    b.host.send(sms::frame::ParameterWrite{0, 0, Long(fw::index_of_calibration_extended_1), 228.0f});
+    b.host.send(sms::frame::ParameterCommit{0, 0, 0, 2});
+  }
   SUBCASE("a value is out of range") {
     begin();
     b.host.send(sms::frame::ParameterWrite{0, 0, stroke, -1.0f});

@@ -1,0 +1,23 @@
+#!/bin/sh
+# Frames and characters under libFuzzer with the sanitizers: fuzz.sh FOLDER SECONDS. The corpus beside this file is where
+# it starts; what it finds anew stays in FOLDER/corpus.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+firmware=$(cd "$here/.." && pwd)
+libsms=$(cd "$firmware/.." && pwd)
+out=$1 seconds=$2
+mkdir -p "$out/corpus"
+objects=
+flags="-O1 -g -fno-math-errno -ffp-contract=off -I$firmware -I$libsms/include -isystem ${EIGEN_INCLUDE:-/usr/include/eigen3}"
+sanitizers="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all"
+for source in "$firmware"/application.cpp "$firmware"/command.cpp "$firmware"/console.cpp "$firmware"/settings.cpp \
+  "$firmware"/telemetry.cpp "$here"/fuzz_application.cpp; do
+  object=$out/$(basename "$source" .cpp).o
+  # shellcheck disable=SC2086  # lists of words
+  clang++ -std=c++17 $flags $sanitizers -c "$source" -o "$object"
+  objects="$objects $object"
+done
+# shellcheck disable=SC2086
+clang++ -fsanitize=fuzzer,address,undefined $objects -o "$out/fuzz_application"
+cd "$out"
+./fuzz_application -max_total_time="$seconds" -max_len=2048 -print_final_stats=1 corpus "$here/corpus"
