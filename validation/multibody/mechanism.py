@@ -6,11 +6,15 @@ geometry.hpp, reading `corrected`); how the machine moves is left to whoever rea
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from sms import Params
-from sms.rows import Array
 
 from validation.multibody.peers.exchange import GROUND, PLATFORM, Body, Joint, Mechanism
+
+if TYPE_CHECKING:  # the list serves simulators too that share nothing with the core
+    from sms import Params
+    from sms.rows import Array
 
 COUNT = 3  # actuators, and Panhard rods
 DESIGN_TURN = np.radians([0.0, -120.0, 120.0])  # of actuators 1 to 3 about z, against the first
