@@ -1,6 +1,6 @@
 """The test matrix as records on disk with their rig file: what `sms identify flow` reads.
 
-    python -m validation.flow_matrix.draw --out FOLDER [--seed N]
+python -m validation.flow_matrix.draw --out FOLDER [--seed N]
 """
 
 from __future__ import annotations

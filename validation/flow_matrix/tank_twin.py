@@ -97,9 +97,9 @@ def simulate(test: Test) -> tuple[Array, Array]:
         flow = test.component.mass_flow(pressure, test.ambient, test.temperature)
         return -test.heat_ratio_out * share * flow
 
-    mass = odeint(
-        mass_rate, start * gauge, grid, rtol=1e-10, atol=1e-13, hmax=0.25, mxstep=5000
-    )[:, 0]
+    mass = odeint(mass_rate, start * gauge, grid, rtol=1e-10, atol=1e-13, hmax=0.25, mxstep=5000)[
+        :, 0
+    ]
     pressure = np.full(time.size, start)
     pressure[time > test.opening] = mass[1:] / gauge
     return time, pressure
