@@ -1,4 +1,5 @@
 // Plants under sampled control: bench and platform, a block of periods at a time.
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -145,7 +146,10 @@ class Simulation {
     {
       const py::gil_scoped_release no_python;
       for (; done < n; ++done) {
-        set_load(load.data() + done * load_width<Plant>(), run_.system.input);
+        status = renew_load(load.data() + done * load_width<Plant>());
+        if (status != SMS_OK) {
+          break;
+        }
         double* const row = out.row(done);
         sms::vector_of(*out.row_as<State>(done)) = sms::vector_of(run_.run.state);
         status =
@@ -173,9 +177,20 @@ class Simulation {
   }
 
  private:
+  // What was known of the next step is no longer true when a load has jumped.
+  sms_status renew_load(const double* load) {
+    if (load_.size() != 0 && std::equal(load_.begin(), load_.end(), load)) {
+      return SMS_OK;
+    }
+    load_.assign(load, load + load_width<Plant>());
+    set_load(load, run_.system.input);
+    return run_.system(run_.run.state, run_.run.rate);
+  }
+
   Params params_;
   sms::Simulation<Plant> run_;
   py::ssize_t width_;
+  std::vector<double> load_;
 };
 
 using BenchSimulation = Simulation<sms::Bench<double>>;

@@ -155,25 +155,83 @@ ceres::Solver::Options solver_options(const FitOptions& options) {
   return out;
 }
 
-// Moves fit.params from the start to the minimum.
-void minimise(const Aim& aim, const FitOptions& options, Fit* fit) {
-  Eigen::VectorXd x = values_of(aim.start, aim.free).cwiseProduct(aim.scale);
-  ceres::Problem ceres_problem;
-  ceres_problem.AddResidualBlock(new Residuals(aim), nullptr, x.data());
+// Bounds of the solver's x.
+struct Box {
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
+};
+
+Box box_of(const Aim& aim) {
+  Box box = {aim.scale, aim.scale};
   for (std::size_t k = 0; k < aim.free.size(); ++k) {
-    const int i = static_cast<int>(k);
-    ceres_problem.SetParameterLowerBound(x.data(), i, aim.free[k].lower * aim.scale[i]);
-    ceres_problem.SetParameterUpperBound(x.data(), i, aim.free[k].upper * aim.scale[i]);
+    const auto i = static_cast<Eigen::Index>(k);
+    box.lower[i] *= aim.free[k].lower;
+    box.upper[i] *= aim.free[k].upper;
+  }
+  return box;
+}
+
+// The parameters that stand at a bound with the minimum beyond it: the gradient points inwards.
+std::vector<int> pressed(const Residuals& residuals, const Box& box, const Eigen::VectorXd& x) {
+  Eigen::VectorXd r(residuals.num_residuals());
+  RowMatrix jacobian(residuals.num_residuals(), x.size());
+  const double* at = x.data();
+  double* to = jacobian.data();
+  residuals.Evaluate(&at, r.data(), &to);
+  const Eigen::VectorXd slope = jacobian.transpose() * r;
+  std::vector<int> out;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double margin = 1e-9 * (box.upper[i] - box.lower[i]);
+    if ((x[i] <= box.lower[i] + margin && slope[i] > 0.0) || (x[i] >= box.upper[i] - margin && slope[i] < 0.0)) {
+      out.push_back(static_cast<int>(i));
+    }
+  }
+  return out;
+}
+
+// One run of the solver with the parameters `held` as they are.
+ceres::Solver::Summary solve(const Aim& aim, const Box& box, const FitOptions& options, const std::vector<int>& held,
+                             Eigen::VectorXd* x) {
+  const int n = static_cast<int>(x->size());
+  ceres::Problem problem;
+  problem.AddResidualBlock(new Residuals(aim), nullptr, x->data());
+  if (static_cast<int>(held.size()) == n) {
+    problem.SetParameterBlockConstant(x->data());
+  } else if (!held.empty()) {
+    problem.SetManifold(x->data(), new ceres::SubsetManifold(n, held));
+  }
+  for (int i = 0; i < n; ++i) {
+    problem.SetParameterLowerBound(x->data(), i, box.lower[i]);
+    problem.SetParameterUpperBound(x->data(), i, box.upper[i]);
   }
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(options), &ceres_problem, &summary);
+  ceres::Solve(solver_options(options), &problem, &summary);
   if (summary.termination_type == ceres::FAILURE) {
     throw std::invalid_argument("fit: " + summary.message);
   }
+  return summary;
+}
+
+// Moves fit.params from the start to the minimum. The solver cuts its steps at the bounds, and with a parameter at one it
+// stops long before the others are where they belong; so it runs again with that parameter held, until the same ones
+// press on their bounds before and after.
+void minimise(const Aim& aim, const FitOptions& options, Fit* fit) {
+  const Box box = box_of(aim);
+  const Residuals residuals(aim);
+  Eigen::VectorXd x = values_of(aim.start, aim.free).cwiseProduct(aim.scale).cwiseMax(box.lower).cwiseMin(box.upper);
+  std::vector<int> held;
+  for (int round = 0; round < 8; ++round) {
+    const ceres::Solver::Summary summary = solve(aim, box, options, held, &x);
+    fit->iterations += static_cast<int>(summary.iterations.size()) - 1;
+    fit->converged = summary.termination_type == ceres::CONVERGENCE;
+    fit->message = summary.message;
+    const std::vector<int> now = pressed(residuals, box, x);
+    if (now == held) {
+      break;
+    }
+    held = now;
+  }
   fit->params = with_values(aim.start, aim.free, x.cwiseQuotient(aim.scale));
-  fit->iterations = static_cast<int>(summary.iterations.size()) - 1;
-  fit->converged = summary.termination_type == ceres::CONVERGENCE;
-  fit->message = summary.message;
 }
 
 }  // namespace
