@@ -88,7 +88,7 @@ void write_terms(const sms::Simulation<sms::Bench<double>>& s, double* row) {
 
 void write_terms(const sms::Simulation<sms::Platform<double>>& s, double* row) {
   const sms::PlatformTerms<double>& t = s.system.terms;
-  for (const double value : {t.start.yaw, t.start.x, t.start.y}) {
+  for (const double value : {t.dynamics.pose.yaw, t.dynamics.pose.x, t.dynamics.pose.y}) {
     *row++ = value;
   }
   for (int i = 0; i < 3; ++i) {

@@ -96,7 +96,7 @@ Vec3<S> newton_step(const FrictionCurve<S> (&curve)[3], const bool (&held)[3], c
     slope(i, i) += friction.slope;
     off(i) -= friction.value;
   }
-  return inverse(slope) * off;
+  return solution<S>(slope, off);
 }
 
 template <typename V>
@@ -105,12 +105,12 @@ V largest(const Vec3<V>& v) {
 }
 
 // Newton's method from a; false, and a as it was, when it does not settle, or a held piston would have to move. It has
-// settled when a step is so small that its square, which is what is left, is below rounding.
+// settled when a step is so small that its square, which is what is left, is near rounding.
 template <typename V>
 bool solve_together(const FrictionCurve<V> (&curve)[3], const bool (&held)[3], const Mat3<V>& mass,
                     const Vec3<V>& drive, Vec3<V>& a) {
   using std::sqrt;
-  const V small = V(0.01) * sqrt(std::numeric_limits<V>::epsilon());
+  const V small = V(4) * sqrt(std::numeric_limits<V>::epsilon());
   Vec3<V> next = a;
   bool settled = false;
   for (int i = 0; i < 8 && !settled; ++i) {
@@ -152,15 +152,12 @@ sms_status coupled_accelerations(const Params<S> (&p)[3], FrictionLaw law, const
   using V = ValueOf<S>;
   detail::FrictionCurve<S> curve[3];
   detail::FrictionCurve<V> plain[3];
-  Mat3<V> plain_mass;
   for (int i = 0; i < 3; ++i) {
     curve[i] = detail::friction_curve(p[i], law, piston[i]);
     plain[i] = detail::value_of(curve[i]);
-    for (int k = 0; k < 3; ++k) {
-      plain_mass(i, k) = value_of(mass(i, k));
-    }
   }
   bool held[3] = {false, false, false};
+  const Mat3<V> plain_mass = value_of(mass);
   const Vec3<V> force = value_of(drive);
   const Vec3<V> guess = value_of(acceleration);
   Vec3<V> a = is_finite(guess) ? guess : Vec3<V>(Vec3<V>::Zero());

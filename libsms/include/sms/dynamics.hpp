@@ -41,6 +41,19 @@ struct DynamicsTerms {
   S potential_energy;   // J, zero at ground
 };
 
+// A^T B where that is symmetric: six products instead of nine.
+template <typename S>
+inline Mat3<S> symmetric_product(const Mat3<S>& a, const Mat3<S>& b) {
+  const auto of = [&a, &b](int row, int column) -> S { return a.col(row).dot(b.col(column)); };
+  return symmetric<S>(of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2));
+}
+
+template <typename S>
+inline Mat3<S> sum_of_symmetric_product(const Mat3<Pair<S>>& a, const Mat3<Pair<S>>& b) {
+  const auto of = [&a, &b](int row, int column) -> S { return Pair<S>(a.col(row).dot(b.col(column))).sum(); };
+  return symmetric<S>(of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2));
+}
+
 template <typename S>
 void add_platform(const Body<S>& body, const S& gravity, DynamicsTerms<S>& t) {
   const Motion<S>& m = t.motion;
@@ -52,13 +65,12 @@ void add_platform(const Body<S>& body, const S& gravity, DynamicsTerms<S>& t) {
   }
   const Mat3<S> turning = rotation.transpose() * m.angular;  // angular velocity per q', platform axes
   const Mat3<S> momentum = body.inertia * turning;
-  t.mass_matrix += body.mass * (velocity.transpose() * velocity) + turning.transpose() * momentum;
+  t.mass_matrix += body.mass * symmetric_product(velocity, velocity) + symmetric_product(turning, momentum);
 
   const Vec3<S> omega = rotation.transpose() * m.angular_velocity;
   const Vec3<S> alpha = rotation.transpose() * m.angular_bias;
   const Vec3<S> spinning = body.inertia * omega, speeding = body.inertia * alpha;
-  const Vec3<S> circling = cross(m.angular_velocity, arm);
-  const Vec3<S> acceleration = m.linear_bias + cross(m.angular_bias, arm) + cross(m.angular_velocity, circling);
+  const Vec3<S> acceleration = m.linear_bias + m.arm_bias * arm;
   t.inertial +=
       body.mass * (velocity.transpose() * acceleration) + turning.transpose() * (speeding + cross(omega, spinning));
   t.weight -= (body.mass * gravity) * velocity.row(2).transpose();
@@ -122,7 +134,7 @@ void add_links(const Mechanism<S>& mechanism, DynamicsTerms<S>& t) {
     velocity.row(1) = constrained(point_slope(attitude, arm, Vec3<Two>(link.axes.col(1))), parasitic);
     velocity.row(2) = pair_of(Vec3<S>(m.extension_slope.row(i)), Vec3<S>(Vec3<S>::Zero()));
     const Mat3<Two> momentum = load.apparent_mass * velocity;
-    t.mass_matrix += sum(Mat3<Two>(velocity.transpose() * momentum));
+    t.mass_matrix += sum_of_symmetric_product(velocity, momentum);
     t.inertial += sum(Vec3<Two>(velocity.transpose() * load.inertial));
     t.weight += sum(Vec3<Two>(velocity.transpose() * load.weight));
     t.potential_energy += link.potential_energy.sum();
@@ -172,7 +184,7 @@ Vec3<S> platform_load(const DynamicsTerms<S>& t, const Wrench<S>& wrench) {
 // q'' under a generalised force.
 template <typename S>
 Vec3<S> acceleration(const DynamicsTerms<S>& t, const Vec3<S>& load) {
-  return inverse(t.mass_matrix) * (load - t.inertial - t.weight);
+  return solution<S>(t.mass_matrix, load - t.inertial - t.weight);
 }
 
 // Actuator forces that give q'' under a generalised force from elsewhere.
@@ -202,8 +214,7 @@ sms_status dynamics_at(const Mechanism<S>& mechanism, const Vec3<S>& q, const Ve
     return SMS_NOT_A_NUMBER;
   }
   Pose<S> pose;
-  Vec3<S> extension;
-  const sms_status status = inverse_kinematics(mechanism.geometry, q, start, pose, extension);
+  const sms_status status = complete_pose(mechanism.geometry, q, tilt_of(q), start, pose);
   if (status == SMS_OK) {
     evaluate_dynamics(mechanism, pose, rate, terms);
   }

@@ -30,6 +30,7 @@
 
 #include <cmath>
 
+#include "sms/effect.hpp"
 #include "sms/params.hpp"
 
 namespace sms {
@@ -80,6 +81,9 @@ template <typename S>
 S exponential_friction(const Params<S>& p, const S& velocity) {
   using std::abs;
   using std::exp;
+  if (is_absent(p.exponential_friction_force)) {
+    return S(0);
+  }
   const S growth = p.exponential_friction_rate * abs(velocity);
   return p.exponential_friction_force * (exp(growth < S(50) ? growth : S(50)) - S(1));
 }

@@ -125,14 +125,25 @@ V length_error(const Vec3<V>& excess, const Vec3<V>& panhard_length) {
   return excess.cwiseQuotient(panhard_length).cwiseAbs().maxCoeff();
 }
 
-// q holds roll, pitch and height; the search starts at the yaw, x and y of `start`. On any status but SMS_OK pose and
-// extension are as they were.
+// Roll and pitch of q = (roll, pitch, height).
 template <typename S>
-sms_status inverse_kinematics(const Geometry<S>& g, const Vec3<S>& q, const Pose<ValueOf<S>>& start, Pose<S>& pose,
-                              Vec3<S>& extension, Convergence<ValueOf<S>>* convergence = nullptr) {
+struct Tilt {
+  SineCosine<S> roll;
+  SineCosine<S> pitch;
+};
+
+template <typename S>
+inline Tilt<S> tilt_of(const Vec3<S>& q) {
+  return {sine_cosine(q(0)), sine_cosine(q(1))};
+}
+
+// The pose of q, whose tilt it is given too; the search starts at the yaw, x and y of `start`. On any status but SMS_OK
+// the pose is as it was.
+template <typename S>
+sms_status complete_pose(const Geometry<S>& g, const Vec3<S>& q, const Tilt<S>& tilt, const Pose<ValueOf<S>>& start,
+                         Pose<S>& pose, Convergence<ValueOf<S>>* convergence = nullptr) {
   using V = ValueOf<S>;
   using std::abs;
-  using std::sqrt;
   if (convergence != nullptr) {
     *convergence = not_begun<V>();
   }
@@ -142,8 +153,7 @@ sms_status inverse_kinematics(const Geometry<S>& g, const Vec3<S>& q, const Pose
   if (abs(value_of(q(0))) > largest_angle<V>() || abs(value_of(q(1))) > largest_angle<V>()) {
     return SMS_OUT_OF_WORKSPACE;
   }
-  const SineCosine<S> roll = sine_cosine(q(0)), pitch = sine_cosine(q(1));
-  const PlanRods<S> rods = plan_rods(g, roll, pitch, q(2));
+  const PlanRods<S> rods = plan_rods(g, tilt.roll, tilt.pitch, q(2));
   const PlanRods<V> rods_value = value_of(rods);
   for (int i = 0; i < 3; ++i) {
     if (!(rods_value.reach_squared[i] > V(0))) {
@@ -159,14 +169,25 @@ sms_status inverse_kinematics(const Geometry<S>& g, const Vec3<S>& q, const Pose
     const Vec3<V> left = plan_error(rods_value, status == SMS_OK ? value_of(x_y_yaw) : solution.x_y_yaw).excess;
     *convergence = {iterations, length_error(left, value_of(g.panhard_length))};
   }
+  if (status == SMS_OK) {
+    pose = {q(0), q(1), q(2), x_y_yaw(2), x_y_yaw(0), x_y_yaw(1)};
+  }
+  return status;
+}
+
+// Pose and extensions of q, as above.
+template <typename S>
+sms_status inverse_kinematics(const Geometry<S>& g, const Vec3<S>& q, const Pose<ValueOf<S>>& start, Pose<S>& pose,
+                              Vec3<S>& extension, Convergence<ValueOf<S>>* convergence = nullptr) {
+  using std::sqrt;
+  const Tilt<S> tilt = tilt_of(q);
+  const sms_status status = complete_pose(g, q, tilt, start, pose, convergence);
   if (status != SMS_OK) {
     return status;
   }
-
-  pose = {q(0), q(1), q(2), x_y_yaw(2), x_y_yaw(0), x_y_yaw(1)};
   const SineCosine<S> yaw = sine_cosine(pose.yaw);
   for (int i = 0; i < 3; ++i) {
-    const Vec3<S> s = tilted(roll, pitch, g.platform[i]);
+    const Vec3<S> s = tilted(tilt.roll, tilt.pitch, g.platform[i]);
     const Vec3<S> leg(yaw.cosine * s(0) - yaw.sine * s(1) + pose.x - g.base[i](0),
                       yaw.sine * s(0) + yaw.cosine * s(1) + pose.y - g.base[i](1), s(2) - pose.height - g.base[i](2));
     extension(i) = sqrt(leg.squaredNorm()) - g.actuator_length(i);

@@ -37,6 +37,7 @@ struct Motion {
   Vec3<S> extension_rate;     // m/s
   Vec3<S> angular_bias;       // omega' at q'' = 0, rad/s^2
   Vec3<S> linear_bias;        // v' at q'' = 0, m/s^2
+  Mat3<S> arm_bias;           // what a point r from the reference point accelerates more than that: arm_bias r
   Vec3<S> joint_bias[6];      // v_P' at q'' = 0, m/s^2
   Vec3<S> extension_bias;     // extension'' at q'' = 0, m/s^2
   Vec3<S> parasitic_rate;     // (yaw, x, y)'
@@ -74,6 +75,17 @@ Vec3<S> joint_load(const Motion<S>& m, int i, const Vec3<S>& force) {
   return constrained(point_slope(m.attitude, m.links.arm[i], force), m.eliminated.parasitic);
 }
 
+// The map from a point's arm r to its acceleration about the reference point: alpha x r + omega x (omega x r).
+template <typename S>
+inline Mat3<S> turning_and_circling(const Vec3<S>& alpha, const Vec3<S>& omega) {
+  const S xx = omega(0) * omega(0), yy = omega(1) * omega(1), zz = omega(2) * omega(2);
+  const S xy = omega(0) * omega(1), xz = omega(0) * omega(2), yz = omega(1) * omega(2);
+  Mat3<S> m;
+  m << -yy - zz, xy - alpha(2), xz + alpha(1), xy + alpha(2), -xx - zz, yz - alpha(0), xz - alpha(1), yz + alpha(0),
+      -xx - yy;
+  return m;
+}
+
 // Velocities and biases for q'; after place().
 template <typename S>
 void move(const Vec3<S>& rate, Motion<S>& m) {
@@ -88,23 +100,21 @@ void move(const Vec3<S>& rate, Motion<S>& m) {
   const Vec3<S> turning =
       rate(0) * cross(carries_roll, m.attitude.roll_axis) + rate(1) * cross(carries_pitch, m.attitude.pitch_axis);
 
-  Vec3<S> swing[6];  // v_P' with q'', yaw'', x'', y'' all zero
-  Vec3<S> missing;
+  const Mat3<S> swing = turning_and_circling(turning, m.angular_velocity);  // with q'', yaw'', x'', y'' all zero
   for (int i = 0; i < 6; ++i) {
-    const Vec3<S>& arm = m.links.arm[i];
-    const Vec3<S> circling = cross(m.angular_velocity, arm);
-    m.joint_velocity[i] = velocity + circling;
-    swing[i] = cross(turning, arm) + cross(m.angular_velocity, circling);
-    if (i >= 3) {
-      missing(i - 3) = m.links.link[i].dot(swing[i]) + m.joint_velocity[i].squaredNorm();
-    }
+    m.joint_velocity[i] = velocity + cross(m.angular_velocity, m.links.arm[i]);
+  }
+  Vec3<S> missing;
+  for (int i = 3; i < 6; ++i) {
+    const Vec3<S> swung = swing * m.links.arm[i];
+    missing(i - 3) = m.links.link[i].dot(swung) + m.joint_velocity[i].squaredNorm();
   }
   m.parasitic_bias = -m.eliminated.panhard_inverse * missing;
   m.angular_bias = turning + m.parasitic_bias(0) * e_z;
   m.linear_bias << m.parasitic_bias(1), m.parasitic_bias(2), S(0);
+  m.arm_bias = turning_and_circling(m.angular_bias, m.angular_velocity);
   for (int i = 0; i < 6; ++i) {
-    const Vec3<S> yawing(-m.links.arm[i](1), m.links.arm[i](0), S(0));  // e_z x r
-    m.joint_bias[i] = swing[i] + m.parasitic_bias(0) * yawing + m.linear_bias;
+    m.joint_bias[i] = m.arm_bias * m.links.arm[i] + m.linear_bias;
   }
   for (int i = 0; i < 3; ++i) {
     m.extension_bias(i) = (m.links.link[i].dot(m.joint_bias[i]) + m.joint_velocity[i].squaredNorm() -

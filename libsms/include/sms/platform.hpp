@@ -42,7 +42,6 @@ struct PlatformTerms {
   Vec3<S> friction;      // F_f, N
   Vec3<S> acceleration;  // q''
   Vec3<S> along;         // e'' of the pistons; the next balance begins there
-  Pose<ValueOf<S>> start;
 };
 
 template <typename S>
@@ -68,14 +67,30 @@ Platform<S> make_platform(const Params<S>& p, const ActuatorLaws& laws, MassMode
 
 template <typename S>
 void prepare(const Platform<S>& platform, PlatformTerms<S>& t) {
-  t.start = value_of(rest_pose(platform.mechanism.geometry));
+  t.dynamics.pose = rest_pose(platform.mechanism.geometry);
+  t.dynamics.motion.eliminated.parasitic.setZero();
   t.along.setZero();
+}
+
+// Where the search for the pose of q begins: yaw, x and y of the last pose, carried along as far as q has moved.
+template <typename S, typename V>
+Pose<V> pose_ahead(const PlatformTerms<S>& t, const Vec3<V>& q) {
+  Pose<V> pose = value_of(t.dynamics.pose);
+  const Vec3<V> moved(q(0) - pose.roll, q(1) - pose.pitch, q(2) - pose.height);
+  const Vec3<V> carried = value_of(t.dynamics.motion.eliminated.parasitic) * moved;
+  pose.yaw += carried(0);
+  pose.x += carried(1);
+  pose.y += carried(2);
+  return pose;
 }
 
 // Moments of the Panhard rods' joints, viscous: they take c |omega_rod|^2.
 template <typename S>
 Vec3<S> panhard_load(const Params<S>& p, const Motion<S>& m) {
   Vec3<S> load = Vec3<S>::Zero();
+  if (is_absent(p.panhard_friction)) {
+    return load;
+  }
   for (int i = 3; i < 6; ++i) {
     const S per_speed = p.panhard_friction * m.reciprocal_length[i] * m.reciprocal_length[i];
     load -= per_speed * joint_load(m, i, m.joint_velocity[i]);
@@ -90,7 +105,7 @@ sms_status balance_coupled(const Platform<S>& platform, const Vec3<S>& force, co
   const Motion<S>& m = t.dynamics.motion;
   const Mat3<S> to_pistons = inverse(m.extension_slope);
   const Mat3<S> transposed = to_pistons.transpose();
-  const Mat3<S> mass = transposed * t.dynamics.mass_matrix * to_pistons;
+  const Mat3<S> mass = symmetric_product<S>(to_pistons, t.dynamics.mass_matrix * to_pistons);
   const Vec3<S> drive = force + transposed * other + mass * m.extension_bias;
   const Piston<S> piston[3] = {t.actuator[0].piston, t.actuator[1].piston, t.actuator[2].piston};
   const sms_status status =
@@ -113,19 +128,22 @@ void balance_direct(const Platform<S>& platform, const PlatformState<S>& state, 
     rate.actuator[i].deflection = alone.deflection_rate;
   }
   const Vec3<S> load = actuator_load<S>(t.dynamics, force - t.friction) + other;
-  t.acceleration = inverse(t.dynamics.mass_matrix) * load;
+  t.acceleration = solution<S>(t.dynamics.mass_matrix, load);
 }
 
 template <typename S>
 sms_status derivative(const Platform<S>& platform, const PlatformState<S>& state, const PlatformInput<S>& input,
                       PlatformTerms<S>& t, PlatformState<S>& rate) {
+  const Geometry<S>& geometry = platform.mechanism.geometry;
   Pose<S> pose;
-  sms_status status = inverse_kinematics(platform.mechanism.geometry, state.q, t.start, pose, t.extension);
+  sms_status status = complete_pose(geometry, state.q, tilt_of(state.q), pose_ahead(t, value_of(state.q)), pose);
   if (status != SMS_OK) {
     return status;
   }
-  t.start = value_of(pose);
   evaluate_dynamics(platform.mechanism, pose, state.rate, t.dynamics);
+  for (int i = 0; i < 3; ++i) {
+    t.extension(i) = t.dynamics.motion.length[i] - geometry.actuator_length(i);
+  }
   Vec3<S> force;
   for (int i = 0; i < 3; ++i) {
     fill_chambers<S>(platform.params[i], platform.laws, state.actuator[i], t.extension(i),
@@ -162,7 +180,8 @@ sms_status platform_at_rest(const Platform<S>& platform, const Vec3<S>& q, const
                             PlatformState<S>& state) {
   PlatformTerms<S> t;
   prepare(platform, t);
-  const sms_status status = dynamics_at(platform.mechanism, q, Vec3<S>(Vec3<S>::Zero()), t.start, t.dynamics);
+  const sms_status status =
+      dynamics_at(platform.mechanism, q, Vec3<S>(Vec3<S>::Zero()), value_of(t.dynamics.pose), t.dynamics);
   if (status != SMS_OK) {
     return status;
   }

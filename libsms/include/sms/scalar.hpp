@@ -46,6 +46,15 @@ Vec3<ValueOf<S>> value_of(const Vec3<S>& v) {
   return {value_of(v(0)), value_of(v(1)), value_of(v(2))};
 }
 
+template <typename S>
+Mat3<ValueOf<S>> value_of(const Mat3<S>& m) {
+  Mat3<ValueOf<S>> value;
+  for (int i = 0; i < 9; ++i) {
+    value(i % 3, i / 3) = value_of(m(i % 3, i / 3));
+  }
+  return value;
+}
+
 // Neither NaN nor infinite.
 template <typename S>
 bool is_finite(const S& s) {
@@ -75,6 +84,15 @@ inline Mat3<S> inverse(const Mat3<S>& m) {
   result.row(1) = scale * cross(c, a);
   result.row(2) = scale * cross(a, b);
   return result;
+}
+
+// x of m x = right, likewise: Cramer's rule.
+template <typename S>
+inline Vec3<S> solution(const Mat3<S>& m, const Vec3<S>& right) {
+  const Vec3<S> a = m.col(0), b = m.col(1), c = m.col(2);
+  const Vec3<S> b_c = cross(b, c);
+  const S scale = S(1) / a.dot(b_c);
+  return {scale * b_c.dot(right), scale * cross(c, a).dot(right), scale * cross(a, b).dot(right)};
 }
 
 }  // namespace sms
