@@ -3,4 +3,5 @@
 #include "abi.inc"
 #include "abi_dynamics.inc"
 #include "abi_kinematics.inc"
+#include "abi_plant.inc"
 #include "abi_table.inc"

@@ -67,4 +67,8 @@ const sms_param_info* sms_param_describe(int index) {
   return index >= 0 && index < kParamCount ? &kParams[index] : nullptr;
 }
 
+void sms_published_laws(sms_actuator_laws* laws) {
+  *laws = {SMS_VALVE_ISO_0_4_MPA, SMS_FRICTION_ACCELERATION_DEPENDENT, SMS_CHAMBER_POLYTROPIC, false};
+}
+
 }  // extern "C"

@@ -156,6 +156,98 @@ static void check_dynamics(const sms_params *params, const sms_paramsf *paramsf)
         "and nothing was written");
 }
 
+/* The plants in both precisions: they rest, they move alike, a fixed and an adaptive step agree, failures touch nothing. */
+static void check_plants(const sms_params *params, const sms_paramsf *paramsf) {
+  const double level[3] = {0.02, -0.01, 0.49};
+  const float levelf[3] = {0.02f, -0.01f, 0.49f};
+  sms_actuator_laws laws, bad;
+  sms_bench bench;
+  sms_benchf benchf;
+  sms_bench_input input = {6.5, 20.0};
+  sms_bench_inputf inputf = {6.5f, 20.0f};
+  sms_bench_state state, fixed, rate;
+  sms_bench_statef statef;
+  sms_platform platform;
+  sms_platformf platformf;
+  sms_platform_input drive = {{5.0, 5.0, 5.0}, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}};
+  sms_platform_inputf drivef = {{6.2f, 5.5f, 4.3f}, {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}}};
+  sms_platform_state at, stepped, at_rate;
+  sms_platform_statef atf;
+  sms_platform_terms terms;
+  sms_platform_termsf termsf;
+  sms_stepping stepping;
+  sms_steppingf steppingf;
+  int i, k;
+
+  sms_published_laws(&laws);
+  bad = laws;
+  bad.friction = (sms_friction_law)5;
+  bench.params.bore_diameter = 7.0;
+  check(sms_bench_from_params(params, &bad, &bench) == SMS_OUT_OF_RANGE && bench.params.bore_diameter == 7.0,
+        "an unknown law is refused");
+  check(sms_platform_from_params(params, &laws, (sms_mass_model)4, &platform) == SMS_OUT_OF_RANGE, "and a mass model");
+  check(sms_bench_from_params(params, &laws, &bench) == SMS_OK, "a bench");
+  check(sms_bench_from_paramsf(paramsf, &laws, &benchf) == SMS_OK, "a bench in float");
+  check(sms_bench_at_rest(&bench, 0.1, 20.0, 333.0e3, &state) == SMS_OK, "at rest");
+  check(sms_bench_at_restf(&benchf, 0.1f, 20.0f, 333.0e3f, &statef) == SMS_OK, "at rest, float");
+  input.command = params->valve_centre;
+  check(sms_bench_derivative(&bench, &state, &input, &rate) == SMS_OK && fabs(rate.velocity) < 1e-9, "rest is rest");
+  input.command = 6.5;
+  fixed = state;
+  sms_stepping_begin(1e-8, &stepping);
+  sms_stepping_beginf(1e-4f, &steppingf);
+  check(sms_bench_advance(&bench, &input, 0.2, &stepping, &state) == SMS_OK && stepping.evaluations > 100, "it runs");
+  check(sms_bench_advancef(&benchf, &inputf, 0.2f, &steppingf, &statef) == SMS_OK, "it runs in float");
+  for (i = 0; i < 4000; ++i) {
+    check(sms_bench_step(&bench, &input, 5e-5, &fixed) == SMS_OK, "a step");
+  }
+  check(state.extension > 0.12 && close_to(state.extension, fixed.extension, 1e-7), "adaptive against fixed steps");
+  check(close_to((double)statef.extension, state.extension, 1e-4), "float against double");
+  fixed = state;
+  input.command = sqrt(-1.0);
+  check(sms_bench_advance(&bench, &input, 0.2, &stepping, &state) == SMS_NOT_A_NUMBER, "NaN is refused");
+  check(sms_bench_derivative(&bench, &state, &input, &rate) == SMS_NOT_A_NUMBER, "by all");
+  input.command = 5.0;
+  check(sms_bench_step(&bench, &input, 0.0, &state) == SMS_OUT_OF_RANGE, "no time is no step");
+  stepping.tolerance = 0.0;
+  check(sms_bench_advance(&bench, &input, 0.2, &stepping, &state) == SMS_OUT_OF_RANGE, "no tolerance neither");
+  check(memcmp(&fixed, &state, sizeof state) == 0, "and the state is as it was");
+
+  check(sms_platform_from_params(params, &laws, SMS_MASSES_CORRECTED, &platform) == SMS_OK, "a platform");
+  check(sms_platform_from_paramsf(paramsf, &laws, SMS_MASSES_CORRECTED, &platformf) == SMS_OK, "a platform in float");
+  check(sms_platform_at_rest(&platform, level, 333.0e3, &at) == SMS_OK, "at rest");
+  check(sms_platform_at_restf(&platformf, levelf, 333.0e3f, &atf) == SMS_OK, "at rest, float");
+  sms_platform_prepare(&platform, &terms);
+  sms_platform_preparef(&platformf, &termsf);
+  for (k = 0; k < 3; ++k) {
+    drive.command[k] = params->valve_centre;
+  }
+  check(sms_platform_derivative(&platform, &at, &drive, &terms, &at_rate) == SMS_OK, "its derivative");
+  check(fabs(at_rate.qdot[0]) + fabs(at_rate.qdot[1]) + fabs(at_rate.qdot[2]) < 1e-9, "rest is rest");
+  check(at.actuator[2].supply_pressure == params->supply_pressure, "fields are where C has them");
+  for (k = 0; k < 3; ++k) {
+    drive.command[k] = (double)drivef.command[k];
+  }
+  stepped = at;
+  sms_stepping_begin(1e-8, &stepping);
+  sms_stepping_beginf(1e-4f, &steppingf);
+  check(sms_platform_advance(&platform, &drive, 0.1, &stepping, &terms, &at) == SMS_OK, "it runs");
+  check(sms_platform_advancef(&platformf, &drivef, 0.1f, &steppingf, &termsf, &atf) == SMS_OK, "it runs in float");
+  for (i = 0; i < 2000; ++i) {
+    check(sms_platform_step(&platform, &drive, 5e-5, &terms, &stepped) == SMS_OK, "a step");
+  }
+  check(terms.extension_rate[0] > terms.extension_rate[2] + 0.01, "each actuator its own way");
+  for (k = 0; k < 3; ++k) {
+    check(close_to(at.q[k], stepped.q[k], 1e-7), "adaptive against fixed steps");
+    check(close_to((double)atf.q[k], at.q[k], 1e-4), "float against double");
+  }
+  stepped = at;
+  at.q[0] = stepped.q[0] = 0.9;
+  check(sms_platform_step(&platform, &drive, 1e-4, &terms, &at) == SMS_OUT_OF_WORKSPACE, "beyond the machine");
+  check(sms_platform_advance(&platform, &drive, 1e-4, &stepping, &terms, &at) == SMS_OUT_OF_WORKSPACE, "either way");
+  check(memcmp(&stepped, &at, sizeof at) == 0, "and the state is as it was");
+}
+
 int main(void) {
   sms_params params;
   sms_paramsf paramsf;
@@ -182,6 +274,7 @@ int main(void) {
         "rod force, float against double");
   check_kinematics(&params, &paramsf);
   check_dynamics(&params, &paramsf);
+  check_plants(&params, &paramsf);
 
   params.bore_diameter = -1.0;
   check(sms_params_check(&params, &index) == SMS_OUT_OF_RANGE, "a negative bore is refused");

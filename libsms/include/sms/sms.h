@@ -5,7 +5,8 @@
  *   no call keeps a pointer. A name with the ending f works in float, the same name without it in double, as in
  *   <math.h>; both are always there. A function that can fail returns sms_status and leaves its outputs as they were.
  *
- * The mechanism is in kinematics.h and dynamics.h, its tables in table.h; they come with this header.
+ * The mechanism is in kinematics.h and dynamics.h, its tables in table.h, the plants in plant.h; they come with this
+ * header.
  *
  * Example: libsms/examples/01_friction.c */
 #ifndef SMS_SMS_H
@@ -106,6 +107,7 @@ float sms_rod_forcef(const sms_paramsf *params, const sms_pistonf *piston);
 
 #include "sms/dynamics.h"
 #include "sms/kinematics.h"
+#include "sms/plant.h"
 #include "sms/table.h"
 
 #endif
