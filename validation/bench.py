@@ -15,7 +15,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from validation import bench_friction, bench_mechanism, bench_simulators
+from validation import bench_friction, bench_mechanism, bench_plant, bench_simulators
 from validation.timing import Row
 
 COMPILED = Path("build/bench/libsms/bench/sms_bench")
@@ -37,7 +37,8 @@ def measurements(install_peers: bool) -> list[Row]:
         *bench_mechanism.motion_rows(compiled),
         *bench_simulators.simulation_rows(compiled["simulation step"] * 1e-3, install_peers),
         *bench_mechanism.batch_rows(compiled),
-        *bench_mechanism.instruction_rows(COMPILED),
+        *bench_plant.plant_rows(compiled),
+        *bench_mechanism.instruction_rows(COMPILED, bench_mechanism.COUNTED + bench_plant.COUNTED),
     ]
 
 

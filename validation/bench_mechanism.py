@@ -199,15 +199,16 @@ def one_core() -> Iterator[None]:
         os.sched_setaffinity(0, before)
 
 
-def instruction_rows(program: Path) -> Iterator[Row]:
+def instruction_rows(program: Path, names: tuple[str, ...]) -> Iterator[Row]:
     """Instructions of one call, which no other work on the machine disturbs; none without valgrind.
 
     Args:
         program: sms_bench; callgrind counts in one round of one of its measurements.
+        names: of the measurements.
     """
     if not shutil.which("valgrind"):
         return
-    for name in COUNTED:
+    for name in names:
         with tempfile.NamedTemporaryFile() as file:
             valgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={file.name}"]
             command = [*valgrind, "--toggle-collect=*counted_round*", str(program), "1", name]

@@ -45,5 +45,6 @@ void measure(const char* name, int calls, const Work& work) {
 // One function a subject, each in its file.
 void friction();
 void mechanism();
+void plant();
 
 }  // namespace sms_bench

@@ -12,4 +12,5 @@ int main(int argc, char** argv) {
   }
   sms_bench::friction();
   sms_bench::mechanism();
+  sms_bench::plant();
 }
