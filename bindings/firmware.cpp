@@ -85,7 +85,7 @@ struct Setting {
 std::vector<Setting> settings() {
   return {
 #define SMS_SETTING(name, unit, lower, value, upper, live, doc) \
-  {fw::index_of_##name, #name, unit, lower, value, upper, live != 0, doc},
+  {fw::index_of_##name, #name, unit, lower, value, upper, (live) != 0, doc},
 #include "settings.def"
   };
 }

@@ -257,6 +257,12 @@ bool is_possible(const Parameters& p) {
   return possible;
 }
 
+// Of a number that is not negative.
+unsigned long nearest(float x) {
+  using std::floor;
+  return static_cast<unsigned long>(floor(x + 0.5f));
+}
+
 }  // namespace
 
 sms_status derive(const Parameters& p, Derived& derived) {
@@ -287,9 +293,8 @@ sms_status derive(const Parameters& p, Derived& derived) {
                   s.excitation_duration};
   d.excitation_closed_loop = s.excitation_closed_loop > 0.5f;
   const float rate = 1.0f / p.machine.control_period;
-  d.sequence = {static_cast<unsigned long>(s.excitation_level_time * rate + 0.5f),
-                static_cast<unsigned long>(s.excitation_duration * rate + 0.5f),
-                static_cast<unsigned long>(s.excitation_cycles + 0.5f)};
+  d.sequence = {nearest(s.excitation_level_time * rate), nearest(s.excitation_duration * rate),
+                nearest(s.excitation_cycles)};
   derived = d;
   return SMS_OK;
 }
@@ -320,25 +325,39 @@ void note(Application& app, EventKind kind, Word detail) {
   note(app.log, event);
 }
 
-Reason request_mode(Application& app, Mode wanted, Reason why) {
-  Reason refused = Reason::none;
+namespace {
+
+// Reason::none when nothing stands against it.
+Reason why_not(const Application& app, Mode wanted) {
   const bool to_drive = is_driven(wanted);
+  if (wanted == Mode::fault || (app.mode == Mode::fault && to_drive)) {
+    return Reason::wrong_mode;
+  }
+  if (app.mode == Mode::fault && stopping(app.faults) != 0u) {
+    return Reason::fault_present;
+  }
+  if (!to_drive) {
+    return Reason::none;
+  }
+  if (!app.enabled) {
+    return Reason::enable_open;
+  }
+  if ((stopping(app.faults) | (app.faults.latched & bit(Fault::watchdog_reset))) != 0u) {
+    return Reason::fault_present;
+  }
+  if (wanted != Mode::levelling && app.mode != Mode::levelling) {
+    return Reason::wrong_mode;
+  }
+  return wanted == Mode::tracking && !app.target.fresh ? Reason::no_setpoint : Reason::none;
+}
+
+}  // namespace
+
+Reason request_mode(Application& app, Mode wanted, Reason why) {
   if (wanted == app.mode) {
     return Reason::none;
   }
-  if (wanted == Mode::fault || (app.mode == Mode::fault && to_drive)) {
-    refused = Reason::wrong_mode;
-  } else if (app.mode == Mode::fault && stopping(app.faults) != 0u) {
-    refused = Reason::fault_present;
-  } else if (to_drive && !app.enabled) {
-    refused = Reason::enable_open;
-  } else if (to_drive && (stopping(app.faults) | (app.faults.latched & bit(Fault::watchdog_reset))) != 0u) {
-    refused = Reason::fault_present;
-  } else if ((wanted == Mode::tracking || wanted == Mode::excitation) && app.mode != Mode::levelling) {
-    refused = Reason::wrong_mode;
-  } else if (wanted == Mode::tracking && !app.target.fresh) {
-    refused = Reason::no_setpoint;
-  }
+  const Reason refused = why_not(app, wanted);
   if (refused != Reason::none) {
     note(app, EventKind::mode_refused, Word(refused));
     return refused;

@@ -201,7 +201,7 @@ void receive_one(Application& app, const Frame& f, sms_hardware_outputs& out) {
   }
   const bool setpoint = f.identifier == Word(frame::AttitudeSetpoint::identifier) ||
                         f.identifier == Word(frame::ExtensionSetpoint::identifier);
-  if (setpoint && !is_plausible(link, f)) {
+  if (setpoint && !is_plausible(link, f, app.target.fresh)) {
     postpone_setpoint(app, alive_of(f), session);
     refuse(app, Reason::none);
     return;

@@ -114,9 +114,10 @@ inline bool is_near(const Word (&a)[3], const Word (&b)[3]) {
   return near_all;
 }
 
-// A set-point far from the last one waits until the next one confirms it: a frame that passed its check by chance moves
-// nothing. One that holds no value goes through, to be refused as such.
-inline bool is_plausible(CommandLink& link, const Frame& f) {
+// A set-point far from the last one waits until the next one confirms it, when there is a last one that still moves the
+// platform: a frame that passed its check by chance moves nothing. One that holds no value goes through, to be refused
+// as such.
+inline bool is_plausible(CommandLink& link, const Frame& f, bool streaming) {
   Neighbourhood& n = link.setpoint[f.identifier == Word(frame::AttitudeSetpoint::identifier) ? 0 : 1];
   Word raw[3];
   bool has_value = true;
@@ -124,7 +125,7 @@ inline bool is_plausible(CommandLink& link, const Frame& f) {
     raw[i] = Word((f.octet[2 + 2 * i] & 0xFFu) | ((f.octet[3 + 2 * i] & 0xFFu) << 8));
     has_value = has_value && raw[i] != 0xFFFFu && raw[i] != 0x8000u;
   }
-  const bool plausible = (n.known && is_near(raw, n.last)) || (n.waiting && is_near(raw, n.candidate));
+  const bool plausible = !streaming || (n.known && is_near(raw, n.last)) || (n.waiting && is_near(raw, n.candidate));
   n.waiting = has_value && !plausible;
   n.known = n.known || plausible;
   for (int i = 0; has_value && i < 3; ++i) {

@@ -312,7 +312,7 @@ void write_console(Application& app, sms_hardware_outputs& out) {
   Console& c = app.console;
   go_on(app);
   while (out.character_count < Word(SMS_CHARACTERS_OUT) && c.waiting.count > 0) {
-    out.characters[out.character_count++] = Word(c.waiting.character[c.waiting.first]);
+    out.characters[out.character_count++] = Word(c.waiting.character[c.waiting.first] & 0x7F);
     c.waiting.first = Word((c.waiting.first + 1) % console_waiting);
     --c.waiting.count;
   }

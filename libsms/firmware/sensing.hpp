@@ -117,26 +117,26 @@ inline void watch_stuck(const Parameters& p, const Sensed& s, int leg, float vol
   const bool air_moves = w.pressure_most[0] - w.pressure_least[0] > p.settings.stuck_pressure ||
                          w.pressure_most[1] - w.pressure_least[1] > p.settings.stuck_pressure;
   const float run = w.upwards ? w.first - x : x - w.first;  // against the command
-  if (still && !air_moves) {
+  const bool runs_away = !still && run > 10.0f * two_counts && run > 0.9f * (w.most - w.least);
+  if (runs_away || (still && !air_moves)) {
     raise(faults, of_leg(Fault::valve_stuck_1, leg));
   } else if (still && !low && !high) {
     raise(faults, of_leg(Fault::sensor_stuck_1, leg));
-  } else if (run > 10.0f * two_counts && run > 0.9f * (w.most - w.least)) {
-    raise(faults, of_leg(Fault::valve_stuck_1, leg));
   }
   watch_anew(w, w.upwards, x, lower, upper, now);
 }
 
 enum { supply_time = 50 /* ms */ };
+enum { lower_chambers = SMS_LEGS, upper_chambers = 2 * SMS_LEGS, supply_channel = 3 * SMS_LEGS };  // in converted
 
 // All sensors of one period. Supply lost: low for 50 ms.
 inline void sense(const Parameters& p, const sms_hardware_inputs& in, Sensing& state, Sensed& s, Faults& faults) {
   for (int i = 0; i < SMS_LEGS; ++i) {
     sense_extension(p, i, in.converted[i], state.leg[i], s.extension[i], faults);
-    s.pressure_lower[i] = converted_pressure(p, in.converted[SMS_LEGS + i]);
-    s.pressure_upper[i] = converted_pressure(p, in.converted[2 * SMS_LEGS + i]);
+    s.pressure_lower[i] = converted_pressure(p, in.converted[lower_chambers + i]);
+    s.pressure_upper[i] = converted_pressure(p, in.converted[upper_chambers + i]);
   }
-  s.supply_pressure = converted_pressure(p, in.converted[3 * SMS_LEGS]);
+  s.supply_pressure = converted_pressure(p, in.converted[supply_channel]);
   const bool low = s.supply_pressure < p.settings.supply_pressure_least;
   state.supply_low = low ? Word(state.supply_low + (state.supply_low < supply_time ? 1 : 0)) : Word(0);
 }

@@ -13,7 +13,7 @@ const ParameterInfo kMachine[param_count] = {
 constexpr int kSettingCount = end_of_settings - first_setting;
 
 const ParameterInfo kSettings[kSettingCount] = {
-#define SMS_SETTING(name, unit, lower, value, upper, live, doc) {#name, float(lower), float(upper), live != 0},
+#define SMS_SETTING(name, unit, lower, value, upper, live, doc) {#name, float(lower), float(upper), (live) != 0},
 #include "settings.def"
 };
 

@@ -40,8 +40,8 @@ Word raw_signal(const Application& app, Word signal) {
   const bool attitude = signal > Word(CaptureSignal::supply_pressure);
   const int place = signal - (attitude ? 2 : 1);
   const Frame f = telemetry(app, supply ? 2 : place / 3);
-  const int word = supply ? 3 : place % 3;
-  return Word(f.octet[2 * word] | (f.octet[2 * word + 1] << 8));
+  const int low = 2 * (supply ? 3 : place % 3);
+  return Word(f.octet[low] | (f.octet[low + 1] << 8));
 }
 
 void capture(Application& app) {

@@ -100,7 +100,7 @@ inline float from_real32(Long bits) {
 // ---- enumerations and frames ----
 
 #define SMS_VALUES(table) enum class table : int {
-#define SMS_VALUE(name, number) name = number,
+#define SMS_VALUE(name, number) name = (number),
 #define SMS_VALUES_END \
   }                    \
   ;
@@ -109,7 +109,7 @@ inline float from_real32(Long bits) {
 namespace frame {
 #define SMS_FRAME(name_, identifier_) \
   struct name_ {                      \
-    enum : Word { identifier = identifier_ };
+    enum : Word { identifier = (identifier_) };
 #define SMS_RAW(name, start, length) Long name;
 #define SMS_UNSIGNED(name, start, step, offset) float name;
 #define SMS_SIGNED(name, start, step, offset) float name;
