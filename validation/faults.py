@@ -38,7 +38,9 @@ def rows() -> list[Row]:
         [str(PROGRAM)], capture_output=True, text=True, check=False, timeout=300
     ).stdout
     cells = (line.split("|") for line in text.splitlines())
-    return [Row(n, c, int(most), int(ms), r, b, yes == "yes") for n, c, most, ms, r, b, yes in cells]
+    return [
+        Row(n, c, int(most), int(ms), r, b, yes == "yes") for n, c, most, ms, r, b, yes in cells
+    ]
 
 
 def table(found: list[Row]) -> str:

@@ -2,8 +2,9 @@
 
     ./dev firmware
 
-Then the application and the processor in the loop: validation/firmware_application.py. Exit code 1 when a goal is missed, when a symbol is called that libsms/firmware_symbols.txt does not list, or when a
-kinematic result differs from the host's in any bit.
+Then the application and the processor in the loop: validation/firmware_application.py. Exit code 1 when a goal is
+missed, when a symbol is called that libsms/firmware_symbols.txt does not list, or when a kinematic result differs from
+the host's in any bit.
 """
 
 from __future__ import annotations

@@ -109,7 +109,11 @@ def check_image(console: Console, allowed: set[str]) -> list[str]:
     console.print(f"largest stack frame: {largest[0]} bytes, in {largest[2].split('(')[0]}")
     strangers = called_symbols() - allowed
     console.print(f"called from outside: {' '.join(sorted(called_symbols()))}")
-    failures = [f"{name}: its frame is {kind}" for _, kind, name in frames_of_the_stack() if kind != "static"]
+    failures = [
+        f"{name}: its frame is {kind}"
+        for _, kind, name in frames_of_the_stack()
+        if kind != "static"
+    ]
     if flash > MOST_FLASH:
         failures.append(f"the image takes {flash} bytes of flash, the goal is {MOST_FLASH}")
     if ram > MOST_RAM:
@@ -127,11 +131,21 @@ def check_c_side(console: Console) -> list[str]:
     if shutil.which("cppcheck") is None:
         console.print("cppcheck is not installed: the C side was not read with chars of 16 bits")
         return []
-    sources = [*sorted((ROOT / "libsms" / "examples").glob("*.c")), FIRMWARE / "tests" / "c_board.c"]
+    sources = [
+        *sorted((ROOT / "libsms" / "examples").glob("*.c")),
+        FIRMWARE / "tests" / "c_board.c",
+    ]
     found = subprocess.run(
-        ["cppcheck", "--quiet", f"--platform={EMULATION / 'c28x.xml'}", "--error-exitcode=1"]
-        + ["--enable=warning,portability,performance", f"-I{ROOT / 'libsms' / 'include'}"]
-        + [f"-I{FIRMWARE}", *map(str, sources)],
+        [
+            "cppcheck",
+            "--quiet",
+            f"--platform={EMULATION / 'c28x.xml'}",
+            "--error-exitcode=1",
+            "--enable=warning,portability,performance",
+            f"-I{ROOT / 'libsms' / 'include'}",
+            f"-I{FIRMWARE}",
+            *map(str, sources),
+        ],
         capture_output=True,
         text=True,
         check=False,
@@ -161,7 +175,9 @@ def check_32_bits(console: Console) -> list[str]:
     tables = [run(str(OUT / f"fault_table.{bits}")) for bits in ("32", "64")]
     same = tables[0] == tables[1]
     rows = len(tables[0].splitlines())
-    console.print(f"32-bit host: {rows} faults, {'the same' if same else 'other'} times and reactions")
+    console.print(
+        f"32-bit host: {rows} faults, {'the same' if same else 'other'} times and reactions"
+    )
     return [] if same else ["the 32-bit host's table of faults is another"]
 
 
@@ -232,7 +248,9 @@ def compare_lockstep(console: Console, here: Lockstep, target: Lockstep) -> list
     table.add_row("valve commands", f"{commands} of {ticks} ticks differ", "0")
     table.add_row("mode, phase, faults", f"{decisions} of {ticks} ticks differ", "0")
     table.add_row(
-        "frames sent", f"{frames} of {ticks} ticks differ", "few: the last bit of a sine in telemetry"
+        "frames sent",
+        f"{frames} of {ticks} ticks differ",
+        "few: the last bit of a sine in telemetry",
     )
     table.add_row(
         "instructions of a tick",

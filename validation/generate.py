@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from sms import _core
+
 from validation.generate_frames import frames
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -1,4 +1,4 @@
-"""The firmware's codec against the definition of the bus: every signal of every frame, at its corners and in between."""
+"""The firmware's codec against the definition of the bus: every signal, at its corners and in between."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from typing import Any
 import cantools
 import pytest
 from cantools.database.can import Message, Signal
-
 from sms import _core
+
 from validation.generate_frames import DBC, is_physical
 
 DATABASE = cantools.database.load_file(DBC)
@@ -41,7 +41,19 @@ def is_no_value(signal: Signal, raw: int) -> bool:
 
 
 def reals() -> list[float]:
-    return [0.0, -0.0, 1.0, -1.0, 0.1, 1e-45, LARGEST_32, -LARGEST_32, math.inf, -math.inf, math.nan]
+    return [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.1,
+        1e-45,
+        LARGEST_32,
+        -LARGEST_32,
+        math.inf,
+        -math.inf,
+        math.nan,
+    ]
 
 
 def by_dbc(message: Message, raw: dict[str, Any]) -> bytes:
