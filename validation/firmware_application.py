@@ -83,12 +83,12 @@ def image_size() -> tuple[int, int]:
 
 
 def frames_of_the_stack() -> list[tuple[int, str, str]]:
-    """Every function's frame as the compiler states it: bytes, kind, name."""
+    """Every function's frame as the compiler states it: bytes, kind, file and line."""
     rows = []
     for source in OUT.glob("*.app.arm.su"):
         for line in source.read_text(encoding="utf-8").splitlines():
             name, size, kind = line.rsplit("\t", 2)
-            rows.append((int(size), kind, name.split(":", 3)[-1]))
+            rows.append((int(size), kind, ":".join(Path(name).name.split(":")[:2])))
     return rows
 
 
@@ -106,7 +106,7 @@ def check_image(console: Console, allowed: set[str]) -> list[str]:
     console.print(f"flash of the whole image: {flash} bytes (goal <= {MOST_FLASH})")
     console.print(f"RAM without stack: {ram} bytes (goal <= {MOST_RAM})")
     largest = max(frames_of_the_stack())
-    console.print(f"largest stack frame: {largest[0]} bytes, in {largest[2].split('(')[0]}")
+    console.print(f"largest stack frame: {largest[0]} bytes, at {largest[2]}")
     strangers = called_symbols() - allowed
     console.print(f"called from outside: {' '.join(sorted(called_symbols()))}")
     failures = [
