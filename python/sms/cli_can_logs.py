@@ -107,9 +107,8 @@ def table(
 
     Other commands need no table: a rig file names the log itself as a record.
     """
-    from sms.io.tables import read_table  # noqa: PLC0415
+    from sms.io.tables import is_can_log, read_table  # noqa: PLC0415
     from sms.io.write import write_table  # noqa: PLC0415
-    from sms.link.logs import is_can_log  # noqa: PLC0415
 
     if not is_can_log(log):
         raise InputError(f"{log}: there is no such CAN log; check the path")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sms.io.errors import InputError, did_you_mean
 from sms.io.rig import RecordSource, Rig, Role, SignalSource
 from sms.io.signals import SIGNAL_UNITS
-from sms.io.tables import Table, read_table
+from sms.io.tables import Table, is_can_log, read_table
 from sms.io.units import array_to_si, split_column_name
 
 Severity = Literal["error", "warning", "note"]
@@ -104,11 +104,9 @@ def load_record(rig: Rig, source: RecordSource) -> Record:
 
 def _read(rig: Rig, file: Path) -> Table:
     """The table of a record: columns of a file, or a CAN log decoded by the rig's DBC."""
-    from sms.link.logs import is_can_log  # noqa: PLC0415 (python-can takes its time to import)
-
     if not is_can_log(file):
         return read_table(file, rig.layout.delimiter, rig.layout.columns)
-    from sms.io.can_frames import load_dbc  # noqa: PLC0415 (and so does cantools)
+    from sms.io.can_frames import load_dbc  # noqa: PLC0415 (python-can takes its time)
     from sms.io.can_logs import read_can_log  # noqa: PLC0415
 
     wanted = {source.column: source.optional for source in rig.signals.values()}

@@ -24,6 +24,12 @@ from numpy.typing import NDArray
 from sms.io.errors import InputError
 
 TEXT_ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")
+_CAN_ENDINGS = (".blf", ".mf4", ".trc")
+_CAN_OPENINGS = {  # the first line of a CAN log that is text; a table may have the same ending
+    ".asc": r"\s*(date|//|base)\b",
+    ".csv": r"timestamp,arbitration_id,extended,remote,error,dlc,data\s*$",
+    ".log": r"\(\d+\.\d+\) \S+ [0-9A-Fa-f]+#",
+}
 _SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "whitespace": r"\s+"}
 _HEADER_WORD = re.compile(r"[^\s\[\]]+(?:\s*\[[^\]]*\])?")
 
@@ -61,16 +67,26 @@ class Table:
         return values, [(int(i), text) for i, text in zip(bad, texts, strict=True)]
 
 
+def is_can_log(file: Path) -> bool:
+    """Whether a file holds CAN frames, by its ending and, for text, by its first line."""
+    ending = file.suffix.lower()
+    if ending not in _CAN_OPENINGS:
+        return ending in _CAN_ENDINGS
+    try:
+        with file.open(encoding="utf-8", errors="replace") as text:
+            return re.match(_CAN_OPENINGS[ending], text.readline(200)) is not None
+    except OSError:
+        return False
+
+
 def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
     """Read a file by its ending; of a CAN log everything that the controller told, see can_logs.py.
 
     `delimiter` ("comma", "semicolon", "tab", "whitespace") is for text files; `columns` names the
     columns of a file that has no header line, or of the one matrix of a .mat file.
     """
-    from sms.link.logs import is_can_log  # noqa: PLC0415 (python-can takes its time to import)
-
     if is_can_log(file):
-        from sms.io.can_logs import read_telemetry  # noqa: PLC0415 (and so does cantools)
+        from sms.io.can_logs import read_telemetry  # noqa: PLC0415 (python-can takes its time)
 
         return read_telemetry(file)
     ending = Path(file.name.lower().removesuffix(".gz")).suffix

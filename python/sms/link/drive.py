@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -39,7 +40,9 @@ class Stream:
         default_factory=lambda: np.empty((0, 3))
     )  #: as the rig then said it was
     left: float | None = None  #: s; since when the rig has said that it is not tracking
-    limited: int = 0  #: Status frames that said a set-point was limited
+    limited: Counter[str] = field(
+        default_factory=Counter
+    )  #: set-points limited in range, rate, ...
     delays: list[float] = field(default_factory=list)  #: s; from set-point to its telemetry
 
     @property
@@ -74,8 +77,9 @@ class Stream:
                 f"the rig followed with an error (rms) of {np.degrees(rms[0]):.3f}° roll, "
                 f"{np.degrees(rms[1]):.3f}° pitch, {1e3 * rms[2]:.1f} mm height"
             )
-        if self.limited:
-            lines.append("the rig limited set-points on the way: the motion asks for too much")
+        if self.limited.total():
+            shares = (f"{name} {n / self.sent.size:.0%}" for name, n in self.limited.items())
+            lines.append(f"the rig limited the set-points, of the time: {', '.join(shares)}")
         return "\n".join(lines)
 
 
@@ -198,5 +202,5 @@ def _check_tracking(link: RigLink, stream: Stream) -> None:
             f"the rig left tracking for {status.signals['mode']}, "
             f"first fault: {status.signals['first_fault']}; `sms can monitor` shows its state"
         )
-    limits = ("limited_range", "limited_rate", "limited_acceleration")
-    stream.limited += any(status.signals[name] for name in limits)
+    for name in ("range", "rate", "acceleration"):
+        stream.limited[name] += bool(status.signals[f"limited_{name}"])

@@ -6,7 +6,6 @@ sees a whole log or none, whatever stops the recording.
 
 from __future__ import annotations
 
-import re
 import secrets
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -17,7 +16,7 @@ import can
 
 from sms.io.errors import InputError
 
-#: what `record` writes; the first words of a text file say whether it is such a log or a table
+#: what `record` writes
 WRITTEN = (".blf", ".asc", ".mf4", ".csv")
 _READERS: Mapping[str, type[can.io.generic.MessageReader]] = MappingProxyType(
     {
@@ -29,26 +28,7 @@ _READERS: Mapping[str, type[can.io.generic.MessageReader]] = MappingProxyType(
         ".trc": can.TRCReader,
     }
 )
-_OPENINGS: Mapping[str, str] = MappingProxyType(
-    {
-        ".asc": r"\s*(date|//|base)\b",
-        ".csv": r"timestamp,arbitration_id,extended,remote,error,dlc,data\s*$",
-        ".log": r"\(\d+\.\d+\) \S+ [0-9A-Fa-f]+#",
-    }
-)
 _NEEDS_MF4 = "MF4 needs one more package: pip install 'sms[can]', or use .blf"
-
-
-def is_can_log(file: Path) -> bool:
-    """Whether a file holds CAN frames, by its ending and, for text, by its first line."""
-    ending = file.suffix.lower()
-    if ending not in _OPENINGS:
-        return ending in _READERS
-    try:
-        with file.open(encoding="utf-8", errors="replace") as text:
-            return re.match(_OPENINGS[ending], text.readline(200)) is not None
-    except OSError:
-        return False
 
 
 def read_frames(file: Path) -> Iterator[can.Message]:
