@@ -21,7 +21,8 @@ APPROACH = 4.0  #: s; from level to the motion's first sample, and back at the e
 LEVEL_TIME = 20.0  #: s; the longest that a platform may take to come up to mid-height
 LEVEL_BAND = 0.005  #: m; closer than this to mid-height counts as there
 LEFT = 0.15  #: s; a rig that says so long that it is not tracking is believed: three Status frames
-ECHO = 0.1  #: s; the longest that the answer to a set-point may take
+ECHO = 0.1  #: s; the longest until a set-point is taken
+TAKEN = ("accepted", "limited")
 LATE = 0.5  #: of a period; a set-point sent later than this counts as late
 
 
@@ -130,14 +131,21 @@ def _setpoint(pose: Array) -> dict[str, float | int | str]:
 
 
 def _send_and_await(link: RigLink, pose: Array) -> None:
-    """One set-point, until the rig says that it took it: a request to track needs a fresh one."""
-    frame = link.send("AttitudeSetpoint", _setpoint(pose))
-    taken = link.wait(lambda: is_answer(link, frame), ECHO)
-    result = link.value("Setpoint", "setpoint_result")
-    if not taken or result not in ("accepted", "limited"):
-        raise LinkError(
-            f"the rig does not take set-points ({result}); `sms can monitor` shows its state"
-        )
+    """Set-points until the rig says that it takes them: a request to track needs a fresh one.
+
+    The first of a stream, which may be far from where the platform is, has to be confirmed by the next.
+    """
+    end = link.clock() + ECHO
+    while link.clock() < end:
+        frame = link.send("AttitudeSetpoint", _setpoint(pose))
+        link.wait(lambda frame=frame: is_answer(link, frame), ECHO)  # type: ignore[misc]
+        if is_answer(link, frame) and link.value("Setpoint", "setpoint_result") in TAKEN:
+            return
+        link.wait(lambda: False, period("AttitudeSetpoint"))
+    raise LinkError(
+        f"the rig does not take set-points ({link.value('Setpoint', 'setpoint_result')}); "
+        "`sms can monitor` shows its state"
+    )
 
 
 def _wait_level(link: RigLink) -> None:
