@@ -169,6 +169,22 @@ def test_a_drive_that_the_rig_leaves_says_why() -> None:
             drive(link, gentle(20.0))
 
 
+def test_a_desk_that_was_late_drives_on_and_says_so() -> None:
+    with desk_and_rig() as (link, world):
+        link.connect()
+        stalled: list[float] = []
+
+        def progress(_what: str, _done: float) -> None:
+            if world.clock() > 6.0 and not stalled:
+                stalled.append(world.clock())
+                world.run(0.2)  # the desk's computer had something else to do
+
+        stream = drive(link, gentle(6.0), progress=progress)
+        assert link.value("Status", "mode") == "levelling"
+    assert stream.resumed == 1
+    assert "was asked to track again: 1 times" in stream.summary()
+
+
 def test_a_rig_that_does_not_come_up_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sms.link.drive.LEVEL_TIME", 0.3)
     with desk_and_rig(height=0.33) as (link, _):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import can
 import numpy as np
 from numpy.typing import NDArray
 
-from sms.link.codec import period
+from sms.link.codec import Value, period
 from sms.link.motion import MID_HEIGHT, PlatformMotion
 from sms.link.rig_link import LinkError, RigLink
 
@@ -21,6 +21,7 @@ APPROACH = 4.0  #: s; from level to the motion's first sample, and back at the e
 LEVEL_TIME = 20.0  #: s; the longest that a platform may take to come up to mid-height
 LEVEL_BAND = 0.005  #: m; closer than this to mid-height counts as there
 LEFT = 0.15  #: s; a rig that says so long that it is not tracking is believed: three Status frames
+RESUMES = 5  #: times that a rig which levelled is asked to track again
 ECHO = 0.1  #: s; the longest until a set-point is taken
 TAKEN = ("accepted", "limited")
 LATE = 0.5  #: of a period; a set-point sent later than this counts as late
@@ -41,6 +42,9 @@ class Stream:
         default_factory=lambda: np.empty((0, 3))
     )  #: as the rig then said it was
     left: float | None = None  #: s; since when the rig has said that it is not tracking
+    resumed: int = (
+        0  #: times that the rig levelled, because set-points were late, and was asked again
+    )
     limited: Counter[str] = field(
         default_factory=Counter
     )  #: set-points limited in range, rate, ...
@@ -77,6 +81,10 @@ class Stream:
             lines.append(
                 f"the rig followed with an error (rms) of {np.degrees(rms[0]):.3f}° roll, "
                 f"{np.degrees(rms[1]):.3f}° pitch, {1e3 * rms[2]:.1f} mm height"
+            )
+        if self.resumed:
+            lines.append(
+                f"set-points were so late that the rig levelled, and was asked to track again: {self.resumed} times"
             )
         if self.limited.total():
             shares = (f"{name} {n / self.sent.size:.0%}" for name, n in self.limited.items())
@@ -205,6 +213,12 @@ def _check_tracking(link: RigLink, stream: Stream) -> None:
         stream.left = None
     elif stream.left is None:
         stream.left = link.clock()
+    elif link.clock() - stream.left > LEFT and _is_late_only(status.signals, stream):
+        stream.resumed += 1
+        stream.left = link.clock()
+        link.send(
+            "ModeRequest", {"mode_request": "tracking", "control_law_request": 0, "acknowledge": 0}
+        )
     elif link.clock() - stream.left > LEFT:
         raise InterruptedDriveError(
             f"the rig left tracking for {status.signals['mode']}, "
@@ -212,3 +226,9 @@ def _check_tracking(link: RigLink, stream: Stream) -> None:
         )
     for name in ("range", "rate", "acceleration"):
         stream.limited[name] += bool(status.signals[f"limited_{name}"])
+
+
+def _is_late_only(signals: Mapping[str, Value], stream: Stream) -> bool:
+    """Whether a rig has levelled for no other reason than a desk that was late, and not too often."""
+    late = signals["first_fault"] in ("none", "setpoint_timeout", "host_gone", "link_disturbed")
+    return signals["mode"] == "levelling" and late and stream.resumed < RESUMES
