@@ -160,10 +160,13 @@ def test_all_moving_bodies_are_there() -> None:
 
 
 def compare_platform(
-    duration: float, laws: dict[str, Any], effects: dict[str, float], **how: Any
+    duration: float,
+    laws: dict[str, Any],
+    effects: dict[str, float],
+    period: float = 0.01,
+    **how: Any,
 ) -> tuple[Array, Array]:
     """Closed loop in the core; the second writing follows the commands that came of it."""
-    period = 0.01
     params = Params(control_period=period, **effects)
     t = period * np.arange(round(duration / period) + 1)
     frequency, size = np.array([0.5, 0.4, 0.3]), np.array([0.06, 0.05, -0.05])
@@ -196,10 +199,11 @@ def test_platform_over_ten_seconds(laws: dict[str, Any]) -> None:
     assert np.all(largest < largest_off(laws))
 
 
-@pytest.mark.full
-def test_platform_at_its_default_tolerance() -> None:
-    _, rms = compare_platform(10.0, {"friction_law": "lugre"}, {})
-    assert np.all(rms[:3] < 3.0 * AGREEMENT)
+@pytest.mark.parametrize("duration", [0.15, pytest.param(2.0, marks=pytest.mark.full)])
+def test_platform_at_its_default_tolerance_under_its_controller(duration: float) -> None:
+    """At 1 kHz, as the controller runs; a slower one lets the steps grow to 1e-5."""
+    largest, _ = compare_platform(duration, {"friction_law": "lugre"}, {}, period=1e-3)
+    assert np.all(largest[:6] < AGREEMENT)
 
 
 # The tank
