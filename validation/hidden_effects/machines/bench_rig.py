@@ -10,7 +10,7 @@ from validation.hidden_effects.machines import bench, excitation
 from validation.hidden_effects.machines.air import Array
 from validation.hidden_effects.machines.declared import BENCH, Declared
 from validation.hidden_effects.machines.effects import SIGNALS
-from validation.hidden_effects.machines.instruments import disturbed
+from validation.hidden_effects.machines.instruments import disturbed, played
 from validation.hidden_effects.machines.measured import Measured, sample_times
 from validation.hidden_effects.machines.seal import sliding_way
 from validation.hidden_effects.machines.truth import Truth
@@ -78,7 +78,7 @@ class BenchRig:
         if truth.machine.supply_line_resistance <= 0.0:
             supply = bench.heads(truth.machine, bench.fine_times(states.shape[0]))
         fine = {
-            "extension": states[:, 0],
+            "extension": self._seen(truth, states),
             "chamber_pressure_lower": states[:, 2],
             "chamber_pressure_upper": states[:, 3],
             "supply_pressure": supply,
@@ -88,3 +88,13 @@ class BenchRig:
             name: disturbed(signal, step, bench.FINE, truth.errors[name])
             for name, signal in fine.items()
         }
+
+    def _seen(self, truth: Truth, states: Array) -> Array:
+        """What the position sensor stands in front of: it is fixed to the ground and follows the
+        rod with a play. The mount takes what the cylinder gives the rod, which is M a here."""
+        body = truth.body
+        rod = states[:, 0]
+        if body.frame_compliance > 0.0:
+            acceleration = np.gradient(states[:, 1], self.sample_step / bench.FINE)
+            rod = rod - body.frame_compliance * truth.machine.moving_mass * acceleration
+        return played(rod, body.backlash)

@@ -172,8 +172,8 @@ CATALOGUE: tuple[Effect, ...] = (
     _shift("centre_of_gravity", "payload_cog_y", "m", 0.3, 3e-3, rigs=("platform",), target="y"),
     _shift("centre_of_gravity", "payload_cog_z", "m", 0.6, 2e-2, rigs=("platform",), target="z"),
     _term("panhard_friction", "panhard_friction", "N m s/rad", 5e3, 20.0, rigs=("platform",)),
-    _term("backlash", "backlash", "m", 5e-3, 1e-4, rigs=("platform",)),
-    _term("frame_compliance", "frame_compliance", "m/N", 1e-5, 1e-7, rigs=("platform",)),
+    _term("backlash", "backlash", "m", 5e-3, 1e-4),
+    _term("frame_compliance", "frame_compliance", "m/N", 1e-5, 1e-7),
     _shift("ambient_pressure", "ambient_pressure", "Pa", 16e3, 300.0, rigs=ALL),
     *_sensors(
         "sensor_gain",

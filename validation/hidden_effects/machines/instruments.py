@@ -106,3 +106,15 @@ def noise(channel: Channel, count: int, step: float, rng: np.random.Generator) -
 def converted(channel: Channel, signal: Array) -> Array:
     """Rounded to the converter's step."""
     return np.asarray(np.round(signal / channel.step) * channel.step, dtype=np.float64)
+
+
+def played(signal: Array, width: float) -> Array:
+    """What follows a signal through a play of `width`: it moves when it is pushed."""
+    if width <= 0.0:
+        return signal
+    follower = np.empty_like(signal)
+    at = float(signal[0])
+    for i, value in enumerate(signal.tolist()):
+        at = min(max(at, value - 0.5 * width), value + 0.5 * width)
+        follower[i] = at
+    return follower

@@ -10,7 +10,7 @@ from validation.hidden_effects.machines import bench, excitation, platform
 from validation.hidden_effects.machines.air import Array
 from validation.hidden_effects.machines.declared import PLATFORM, Declared
 from validation.hidden_effects.machines.effects import SIGNALS
-from validation.hidden_effects.machines.instruments import disturbed
+from validation.hidden_effects.machines.instruments import disturbed, played
 from validation.hidden_effects.machines.machine import Body
 from validation.hidden_effects.machines.measured import Measured, sample_times
 from validation.hidden_effects.machines.seal import sliding_way
@@ -110,15 +110,3 @@ class PlatformRig:
             name: disturbed(fine[name], step, platform.FINE, truth.errors[name])
             for name in self.signals
         }
-
-
-def played(signal: Array, width: float) -> Array:
-    """What follows a signal through a play of `width`: it moves when it is pushed."""
-    if width <= 0.0:
-        return signal
-    follower = np.empty_like(signal)
-    at = float(signal[0])
-    for i, value in enumerate(signal.tolist()):
-        at = min(max(at, value - 0.5 * width), value + 0.5 * width)
-        follower[i] = at
-    return follower
