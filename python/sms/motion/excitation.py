@@ -16,9 +16,15 @@ from sms.io.errors import InputError
 from sms.rows import Array
 
 
-def sine(time: Array, amplitude: float, frequency: float, offset: float = 0.0) -> Array:
-    """offset + amplitude sin(2 pi frequency t); frequency in Hz."""
-    return chirp(time, amplitude, frequency, frequency, 1.0) + offset
+def sine(
+    time: Array, amplitude: float, frequency: float, offset: float = 0.0, jump: float = 0.0
+) -> Array:
+    """offset + amplitude sin(2 pi frequency t); frequency in Hz.
+
+    `jump` is added with the sine's sign: it steps over a valve's dead band (section 7.2).
+    """
+    wave = chirp(time, amplitude, frequency, frequency, 1.0)
+    return np.asarray(wave + jump * np.sign(wave) + offset)
 
 
 def chirp(time: Array, amplitude: float, first: float, last: float, duration: float) -> Array:

@@ -127,7 +127,10 @@ def _signal(
         offset = 0.0
         if table.offset is not None:
             offset = scenario.number("excitation", "offset", table.offset, unit)
-        values = sine(late, amplitude, hertz("frequency", table.frequency), offset)
+        jump = 0.0
+        if table.jump is not None:
+            jump = scenario.number("excitation", "jump", table.jump, unit)
+        values = sine(late, amplitude, hertz("frequency", table.frequency), offset, jump)
     elif isinstance(table, ChirpTable):
         sweep = float(late[-1])
         if table.sweep is not None:

@@ -68,6 +68,7 @@ class SineTable(ExcitationTable):
     kind: Literal["sine"]
     frequency: TextOrNumber
     offset: TextOrNumber | None = None
+    jump: TextOrNumber | None = None
 
 
 class ChirpTable(ExcitationTable):
