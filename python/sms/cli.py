@@ -11,7 +11,15 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
-from sms import _core, cli_can, cli_identify, cli_mechanism, cli_simulate, cli_study
+from sms import (
+    _core,
+    cli_can,
+    cli_identify,
+    cli_mechanism,
+    cli_simulate,
+    cli_study,
+    cli_validate,
+)
 from sms.io.errors import InputError
 
 app = typer.Typer(
@@ -97,6 +105,7 @@ cli_identify.register(app)
 cli_simulate.register(app)
 cli_study.register(app)
 cli_can.register(app)
+cli_validate.register(app)
 
 
 def main() -> None:
