@@ -2,10 +2,10 @@
 #include <pybind11/eigen.h>
 
 #include "bind.hpp"
-#include "choice.hpp"
 #include "estimation/cylinder.hpp"
 #include "estimation/fit.hpp"
 #include "estimation/tank.hpp"
+#include "laws.hpp"
 
 namespace sms_python {
 namespace {
@@ -15,13 +15,14 @@ namespace est = sms::estimation;
 est::CylinderRecord make_cylinder_record(Eigen::VectorXd extension, Eigen::VectorXd velocity,
                                          Eigen::VectorXd acceleration, Eigen::VectorXd pressure_lower,
                                          Eigen::VectorXd rod_force, Eigen::VectorXd pressure_upper, bool gauge_lower,
-                                         bool gauge_upper) {
+                                         bool gauge_upper, Eigen::VectorXd time) {
   return {std::move(extension),
           std::move(velocity),
           std::move(acceleration),
           std::move(pressure_lower),
           std::move(pressure_upper),
           std::move(rod_force),
+          std::move(time),
           gauge_lower,
           gauge_upper};
 }
@@ -72,14 +73,18 @@ void bind_estimation(py::module_& m) {
       .def(py::init(&make_cylinder_record), py::kw_only(), py::arg("extension"), py::arg("velocity"),
            py::arg("acceleration"), py::arg("pressure_lower"), py::arg("rod_force"),
            py::arg("pressure_upper") = Eigen::VectorXd(), py::arg("gauge_lower") = false,
-           py::arg("gauge_upper") = false);
+           py::arg("gauge_upper") = false, py::arg("time") = Eigen::VectorXd());
 
   py::class_<est::Problem>(m, "Problem", "A model held against measured records.")
       .def_property_readonly("rows", &est::Problem::rows)
       .def("evaluate", &evaluate, py::arg("params"), py::arg("free") = std::vector<std::string>(),
            "(residual (rows,), jacobian (rows, free)): predicted minus measured, and its exact derivatives.");
   py::class_<est::CylinderProblem, est::Problem>(m, "CylinderProblem")
-      .def(py::init<std::vector<est::CylinderRecord>>(), py::arg("records"));
+      .def(py::init([](std::vector<est::CylinderRecord> records, const std::string& law) {
+             return est::CylinderProblem(std::move(records), friction_law(law));
+           }),
+           py::arg("records"), py::arg("law") = "acceleration_dependent",
+           "law: acceleration_dependent, two_branch, stribeck; dahl and lugre need the records' time.");
 
   py::class_<est::TankProblem, est::Problem>(
       m, "TankProblem",

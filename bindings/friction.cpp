@@ -1,24 +1,11 @@
 // The friction laws beyond the source's own, and the force balance solved for the acceleration, over numpy arrays that
 // broadcast.
 #include "broadcast.hpp"
-#include "choice.hpp"
-#include "sms/force_balance.hpp"
+#include "laws.hpp"
 
 namespace sms_python {
-namespace {
 
 using sms::FrictionLaw;
-
-FrictionLaw friction_law(const std::string& name) {
-  return choice<FrictionLaw>("law", name,
-                             {{"acceleration_dependent", FrictionLaw::acceleration_dependent},
-                              {"two_branch", FrictionLaw::two_branch},
-                              {"stribeck", FrictionLaw::stribeck},
-                              {"dahl", FrictionLaw::dahl},
-                              {"lugre", FrictionLaw::lugre}});
-}
-
-}  // namespace
 
 void bind_friction(py::module_& m) {
   m.def(

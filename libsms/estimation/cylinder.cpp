@@ -19,9 +19,9 @@ S chamber_pressure(double reading, bool gauge, const S& gain, const S& offset, c
   return gauge ? S(truth + ambient) : truth;
 }
 
-// Predicted minus measured reading of the load cell, for one sample.
+// The true state of the piston at one sample, from its readings.
 template <typename S>
-S residual_at(const Params<S>& p, const CylinderRecord& record, Eigen::Index i) {
+Piston<S> piston_at(const Params<S>& p, const CylinderRecord& record, Eigen::Index i) {
   const S scale = S(1) / (S(1) + p.sensor_gain_extension);
   Piston<S> piston;
   piston.extension = sensor_truth(S(record.extension[i]), p.sensor_gain_extension, p.sensor_offset_extension);
@@ -36,10 +36,64 @@ S residual_at(const Params<S>& p, const CylinderRecord& record, Eigen::Index i) 
         chamber_pressure(record.pressure_upper[i], record.gauge_upper, p.sensor_gain_chamber_pressure_upper,
                          p.sensor_offset_chamber_pressure_upper, p.ambient_pressure);
   }
-  return sensor_reading(rod_force(p, piston), p.sensor_gain_rod_force, p.sensor_offset_rod_force) - record.rod_force[i];
+  return piston;
 }
 
-void check(const CylinderRecord& record, std::size_t number) {
+bool has_memory(FrictionLaw law) { return law == FrictionLaw::dahl || law == FrictionLaw::lugre; }
+
+template <typename S>
+BristleFriction<S> bristle_friction(const Params<S>& p, FrictionLaw law, const Piston<S>& piston, const S& deflection) {
+  return law == FrictionLaw::dahl ? dahl_friction(p, piston, deflection) : lugre_friction(p, piston, deflection);
+}
+
+// z after dt of z' = v - k z, k and v held; k is read off the rate, which is linear in z once lambda is held.
+template <typename S>
+S deflected(const Params<S>& p, FrictionLaw law, const Piston<S>& piston, const S& z, double dt) {
+  using std::abs;
+  using std::exp;
+  const S lost = piston.velocity - bristle_friction(p, law, piston, z).deflection_rate;  // k z
+  if (!(abs(lost) * dt > 1e-9 * abs(z))) {
+    return z + piston.velocity * dt;
+  }
+  const S k = lost / z;
+  const S settled = piston.velocity / k;
+  return settled + (z - settled) * exp(-k * dt);
+}
+
+template <typename S>
+S friction_at(const Params<S>& p, FrictionLaw law, const Piston<S>& piston, const S& deflection) {
+  switch (law) {
+    case FrictionLaw::acceleration_dependent:
+      return friction(p, piston);
+    case FrictionLaw::two_branch:
+      return friction_two_branch(p, piston);
+    case FrictionLaw::stribeck:
+      return friction_stribeck(p, piston.velocity);
+    default:
+      return bristle_friction(p, law, piston, deflection).force;
+  }
+}
+
+// Predicted minus measured readings of the load cell, of one record.
+template <typename S>
+void residuals_of(const Params<S>& p, const CylinderRecord& record, FrictionLaw law, S* out) {
+  constexpr int kParts = 4;  // of a step between samples
+  S deflection(0);
+  for (Eigen::Index i = 0; i < record.rod_force.size(); ++i) {
+    const Piston<S> piston = piston_at(p, record, i);
+    if (has_memory(law) && i > 0) {
+      const double dt = (record.time[i] - record.time[i - 1]) / kParts;
+      for (int part = 0; part < kParts; ++part) {
+        deflection = deflected(p, law, piston, deflection, dt);
+      }
+    }
+    const S rod =
+        pressure_force(p, piston) - friction_at(p, law, piston, deflection) - p.moving_mass * piston.acceleration;
+    out[i] = sensor_reading(rod, p.sensor_gain_rod_force, p.sensor_offset_rod_force) - record.rod_force[i];
+  }
+}
+
+void check(const CylinderRecord& record, std::size_t number, bool needs_time) {
   const Eigen::Index n = record.rod_force.size();
   const auto refuse = [number](const std::string& what) {
     throw std::invalid_argument("cylinder record " + std::to_string(number) + ": " + what);
@@ -61,13 +115,20 @@ void check(const CylinderRecord& record, std::size_t number) {
     check_one(record.pressure_upper, "pressure_upper");
   }
   check_one(record.rod_force, "rod_force");
+  if (needs_time || record.time.size() > 0) {
+    check_one(record.time, "time");
+    if (n > 1 && !((record.time.tail(n - 1) - record.time.head(n - 1)).array() > 0.0).all()) {
+      refuse("time does not rise from sample to sample");
+    }
+  }
 }
 
 }  // namespace
 
-CylinderProblem::CylinderProblem(std::vector<CylinderRecord> records) : records_(std::move(records)) {
+CylinderProblem::CylinderProblem(std::vector<CylinderRecord> records, FrictionLaw law)
+    : records_(std::move(records)), law_(law) {
   for (std::size_t i = 0; i < records_.size(); ++i) {
-    check(records_[i], i);
+    check(records_[i], i, has_memory(law));
     rows_ += static_cast<int>(records_[i].rod_force.size());
   }
 }
@@ -76,9 +137,8 @@ void CylinderProblem::evaluate(const Params<double>& params, const std::vector<i
                                RowMatrix* jacobian) const {
   const auto model = [this](const auto& p, auto* out) {
     for (const CylinderRecord& record : records_) {
-      for (Eigen::Index i = 0; i < record.rod_force.size(); ++i) {
-        *out++ = residual_at(p, record, i);
-      }
+      residuals_of(p, record, law_, out);
+      out += record.rod_force.size();
     }
   };
   evaluate_with_jets(model, rows_, params, free, residual, jacobian);

@@ -90,6 +90,41 @@ def flow(
     print(f"written: {', '.join(str(f) for f in files)}")
 
 
+@identify.command(
+    epilog="Example: **sms identify friction cylinder.toml --out friction** writes friction/friction.toml (the rig "
+    "file with what was identified; every other command reads it), friction/friction.json and "
+    "friction/report.html."
+)
+def friction(rig: RigFile, out: Out = Path("friction"), as_json: AsJson = False) -> None:
+    """The friction of a cylinder from its displacement and its pressures.
+
+    The rig is of kind *cylinder* or *bench*; without a rod force the piston is taken as unloaded. The source's law
+    (eq. 6.5) and its rivals (eq. 6.1, eq. 6.2, LuGre) are fitted to the records with role *identify* and judged on
+    the others. Parameters that these motions cannot show are left where they are declared, and named.
+    """
+    from sms.diagnosis.files import check_output_folder  # noqa: PLC0415 (scipy takes a second)
+    from sms.identification import friction_result  # noqa: PLC0415
+    from sms.identification.friction import identify_friction  # noqa: PLC0415
+    from sms.identification.output import json_text  # noqa: PLC0415
+    from sms.io import write_extended_rig  # noqa: PLC0415
+    from sms.report.friction import friction_html  # noqa: PLC0415
+
+    check_output_folder(out)
+    with _progress("reading records") as update:
+        result = identify_friction(rig, update)
+        page = friction_html(result)
+    text = json_text(friction_result.to_dict(result))
+    header = "\n".join(["Friction identified by sms identify friction.", *friction_result.sentences(result)])
+    write_extended_rig(rig, out / "friction.toml", friction_result.declarations(result), header)
+    files = _write(out, {"friction.json": text, "report.html": page})
+    if as_json:
+        print(text, end="")
+        return
+    for sentence in friction_result.sentences(result):
+        print(f"- {sentence}")
+    print(f"written: {', '.join(str(f) for f in (out / 'friction.toml', *files))}")
+
+
 # ---- shared ------------------------------------------------------------------------------------------------
 
 

@@ -1,0 +1,1 @@
+"""Runs of an unloaded cylinder on the bench, made by an independent simulator."""
