@@ -16,6 +16,7 @@ from sms import (
     cli_can,
     cli_identify,
     cli_mechanism,
+    cli_noise,
     cli_simulate,
     cli_study,
     cli_validate,
@@ -105,6 +106,7 @@ cli_identify.register(app)
 cli_simulate.register(app)
 cli_study.register(app)
 cli_can.register(app)
+cli_noise.register(app)
 cli_validate.register(app)
 
 

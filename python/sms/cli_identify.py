@@ -13,7 +13,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 RigFile = Annotated[
-    Path, typer.Argument(help="The rig file (TOML): what was measured, what is known, which records.")
+    Path,
+    typer.Argument(help="The rig file (TOML): what was measured, what is known, which records."),
 ]
 Out = Annotated[Path, typer.Option(help="Folder for the parameter file, the JSON and report.html.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the JSON instead of the summary.")]
@@ -114,7 +115,9 @@ def friction(rig: RigFile, out: Out = Path("friction"), as_json: AsJson = False)
         result = identify_friction(rig, update)
         page = friction_html(result)
     text = json_text(friction_result.to_dict(result))
-    header = "\n".join(["Friction identified by sms identify friction.", *friction_result.sentences(result)])
+    header = "\n".join(
+        ["Friction identified by sms identify friction.", *friction_result.sentences(result)]
+    )
     write_extended_rig(rig, out / "friction.toml", friction_result.declarations(result), header)
     files = _write(out, {"friction.json": text, "report.html": page})
     if as_json:

@@ -86,7 +86,7 @@ def simulate(test: Test) -> tuple[Array, Array]:
     start = test.ambient if test.charge else test.supply
     gauge = test.volume / (R * test.temperature)  # kg per Pa
     after = time[time > test.opening]
-    grid = np.concatenate(([test.opening], after))
+    grid = np.insert(after, 0, test.opening)
 
     def mass_rate(state: Array, clock: float) -> float:
         pressure = max(float(state[0]), 1e-12) / gauge
@@ -129,10 +129,14 @@ def read(pressure: Array, sensor: Sensor, rng: np.random.Generator) -> Array:
 
 # ---- the matrix of section 5.2.3 -----------------------------------------------------------------------
 
-SPOOL = 1e-3 * np.array(
-    [0.2, 0.25, 0.275, 0.3, 0.325, 0.35, 0.375, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8]
-    + [0.85, 0.9, 0.95, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8]
-)  # fmt: skip
+SPOOL = 1e-3 * np.concatenate(
+    (
+        [0.2, 0.25],
+        np.arange(0.275, 0.41, 0.025),
+        np.arange(0.45, 1.01, 0.05),
+        np.arange(1.1, 1.81, 0.1),
+    )
+)
 SUPPLIES = (286e3, 486e3)
 FLOOR = 86e3 + 10e3
 

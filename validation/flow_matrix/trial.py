@@ -95,7 +95,9 @@ def cover(
     rng = np.random.default_rng([seed, int(1e6 * case[0]), int(case[1]), int(case[2])])
     made = [one_test(*case, rng, colour) for _ in range(repeats)]
     with ThreadPoolExecutor() as pool:
-        fits = list(pool.map(partial(fit_record, declared=declared), [record for record, _ in made]))
+        fits = list(
+            pool.map(partial(fit_record, declared=declared), [record for record, _ in made])
+        )
     covered, error, told = {}, {}, {}
     for name in COMPONENT:
         true = np.array([truth_of(test)[name] for _, test in made])
@@ -122,7 +124,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m validation.flow_matrix.trial")
     parser.add_argument("--repeats", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--colour", type=float, default=0.0, help="correlation of the noise from sample to sample")
+    parser.add_argument(
+        "--colour", type=float, default=0.0, help="correlation of the noise from sample to sample"
+    )
     options = parser.parse_args()
     symbols = [SYMBOL[name] for name in COMPONENT]
     print(f"{options.repeats} repeats, seed {options.seed}, colour {options.colour:g}\n")

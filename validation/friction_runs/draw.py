@@ -43,7 +43,7 @@ class Friction:
         width = np.abs(a) * self.factor * self.stribeck_velocity
         starting = v * a > 0.0
         ratio = np.divide(speed, width, out=np.full_like(v, 1e3), where=width > 0.0)
-        fall = np.where(starting, np.exp(-np.minimum(ratio, 1e3) ** self.exponent), 0.0)
+        fall = np.where(starting, np.exp(-(np.minimum(ratio, 1e3) ** self.exponent)), 0.0)
         dry = self.coulomb + (self.stiction - self.coulomb) * fall
         alpha = np.where(speed < self.ramp, np.sin(np.pi / 2 * speed / self.ramp), 1.0)
         return np.asarray(alpha * (np.sign(v) * dry + self.viscous * v))

@@ -167,7 +167,8 @@ def _covariance(
     """Covariance (k, k) and inflation (k,), parameters at a bound taken as fixed."""
     k = len(free)
     inside = np.flatnonzero(~np.array(at_bound, dtype=bool))
-    prior = np.diag([1.0 / free[i].known_to ** 2 if free[i].known_to else 0.0 for i in inside])
+    known = np.array([1.0 / f.known_to**2 if f.known_to else 0.0 for f in free])
+    prior = np.diag(known[inside])
     columns = jacobian[:, inside]
     length = np.sqrt(np.maximum(np.sum(columns**2, axis=0) + np.diag(prior), 1e-300))
     columns, prior = columns / length, prior / np.outer(length, length)
@@ -262,9 +263,7 @@ def _total_cost(found: Estimate, params: _core.Params) -> float:
     if found.huber > 0.0:
         soft = size > found.huber
         size = np.where(soft, np.sqrt(np.maximum(found.huber * (2 * size - found.huber), 0)), size)
-    pulls = [
-        (params[f.name] - found.start[f.name]) / f.known_to for f in found.free if f.known_to
-    ]
+    pulls = [(params[f.name] - found.start[f.name]) / f.known_to for f in found.free if f.known_to]
     return float(size @ size) + float(np.sum(np.square(pulls)))
 
 
@@ -312,5 +311,3 @@ def with_start(params: _core.Params, **values: float) -> _core.Params:
     for name, value in values.items():
         out[name] = value
     return out
-
-

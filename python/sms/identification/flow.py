@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sms import _core
 from sms.diagnosis.result import Array
@@ -163,9 +164,7 @@ def fit_record(
     weight = _weight(record, look)
     counted = _seen(problem, base, look)
     found = estimate(problem, starts, free, weight, counted, huber)
-    profiles = {
-        name: profile(found, name) for name in (COMPONENT[1:] if with_profiles else ())
-    }
+    profiles = {name: profile(found, name) for name in (COMPONENT[1:] if with_profiles else ())}
     budget = _budget(found, declared, heat)
     spread = float(np.sqrt(sum(c.uncertainty**2 for c in budget)))
     known = {name: _known(found, name, profiles.get(name), spread) for name in COMPONENT}
@@ -264,7 +263,9 @@ def _problem(record: FlowRecord, look: Look, law: str, heat: str) -> _core.TankP
         time=record.time,
         pressure=record.pressure,
         charge=look.charge,
-        temperature=nothing if record.temperature is None or heat != "energy" else record.temperature,
+        temperature=nothing
+        if record.temperature is None or heat != "energy"
+        else record.temperature,
         supply=nothing if supply is None else smooth_supply(record.time, supply),
         law=law,
         heat=heat,
@@ -277,7 +278,7 @@ def _weight(record: FlowRecord, look: Look) -> Array:
     return np.full(record.pressure.size, 1.0 / noise)
 
 
-def _seen(problem: _core.TankProblem, params: _core.Params, look: Look) -> Array:
+def _seen(problem: _core.TankProblem, params: _core.Params, look: Look) -> NDArray[np.bool_]:
     """(rows,): rows in which the sensor follows the tank."""
     residual, _ = problem.evaluate(params)
     seen = np.ones(residual.size, dtype=np.bool_)
@@ -285,7 +286,7 @@ def _seen(problem: _core.TankProblem, params: _core.Params, look: Look) -> Array
         open_ended = with_start(params, tank_pressure_floor=0.0, tank_pressure_ceiling=1e9)
         free, _ = problem.evaluate(open_ended)
         seen = np.abs(free - residual) < 1.0
-    return seen if seen.sum() > 20 else np.ones(residual.size, dtype=np.bool_)
+    return seen if int(seen.sum()) > 20 else np.ones(residual.size, dtype=np.bool_)
 
 
 def _classic(
@@ -294,7 +295,7 @@ def _classic(
     base: _core.Params,
     surroundings: Sequence[Free],
     weight: Array,
-    counted: Array,
+    counted: NDArray[np.bool_],
     heat: str,
     huber: float,
 ) -> Estimate | None:
@@ -315,7 +316,9 @@ def _known(found: Estimate, name: str, curve: Profile | None, spread: float) -> 
     value = float(found.value[found.index(name)])
     sd = found.sd(name)
     if name == "component_conductance":
-        return Known(name, value, sd, value - 2 * spread, value + 2 * spread, True, bool(np.isfinite(sd)))
+        return Known(
+            name, value, sd, value - 2 * spread, value + 2 * spread, True, bool(np.isfinite(sd))
+        )
     if curve is None:
         half = 1.96 * sd
         closed = bool(np.isfinite(sd))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -88,9 +89,7 @@ def _map_curve(group: list[FlowFit], direction: str, level: float, monotone: boo
     spool = np.array(positions)
     ratio, ratio_known = _filled(spool, b, [f.known[COMPONENT[1]].value for f in group])
     index, index_known = _filled(spool, m, [f.known[COMPONENT[2]].value for f in group])
-    return MapCurve(
-        direction, level, spool, c_all, u_all, ratio, ratio_known, index, index_known
-    )
+    return MapCurve(direction, level, spool, c_all, u_all, ratio, ratio_known, index, index_known)
 
 
 def _pooled(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
@@ -149,17 +148,23 @@ def compare_supplies(fits: Sequence[FlowFit]) -> tuple[SupplyComparison, ...]:
             }
             for level in levels
         }
-        for low, high in zip(levels, levels[1:], strict=False):
+        for low, high in pairwise(levels):
             common = sorted(p for p in by[low].keys() & by[high].keys() if p is not None)
             if not common:
                 continue
-            c = np.array([[by[s][p].known[COMPONENT[0]].value for s in (low, high)] for p in common])
+            c = np.array(
+                [[by[s][p].known[COMPONENT[0]].value for s in (low, high)] for p in common]
+            )
             u = np.array([[by[s][p].known[COMPONENT[0]].sd for s in (low, high)] for p in common])
             far = np.abs(c[:, 1] - c[:, 0]) > 3.0 * np.hypot(u[:, 0], u[:, 1])
             out.append(
                 SupplyComparison(
-                    direction, low, high, float(np.median(c[:, 1] / c[:, 0] - 1.0)),
-                    int(far.sum()), len(common),
-                )  # fmt: skip
+                    direction,
+                    low,
+                    high,
+                    float(np.median(c[:, 1] / c[:, 0] - 1.0)),
+                    int(far.sum()),
+                    len(common),
+                )
             )
     return tuple(out)

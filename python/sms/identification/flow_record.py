@@ -159,7 +159,7 @@ def _rests(pressure: Array, noise: float) -> bool:
     tenth = max(pressure.size // 10, 2)
     last, before = pressure[-tenth:], pressure[-2 * tenth : -tenth]
     drift = abs(float(np.mean(last) - np.mean(before)))
-    return drift < 4.0 * noise / np.sqrt(tenth) + 1e-4 * float(np.ptp(pressure))
+    return bool(drift < 4.0 * noise / np.sqrt(tenth) + 1e-4 * float(np.ptp(pressure)))
 
 
 def _run_of(values: Array, extreme: float) -> int:

@@ -199,7 +199,12 @@ def parameter_file(result: FlowResult) -> str:
         lines += [f"heat_ratio_in = {result.heat_ratios[0]!r}"]
         lines += [f"heat_ratio_out = {result.heat_ratios[1]!r}"]
     for f in result.good:
-        lines += ["", "[[component]]", f'record = "{f.record.name}"', f'direction = "{f.direction}"']
+        lines += [
+            "",
+            "[[component]]",
+            f'record = "{f.record.name}"',
+            f'direction = "{f.direction}"',
+        ]
         lines.append(f"supply_pressure = {f.record.supply_pressure!r}")
         if f.record.spool is not None:
             lines.append(f"spool_position = {f.record.spool!r}")

@@ -134,7 +134,9 @@ def identify_friction(path: Path, progress: Progress = lambda text, done: None) 
     identify = [m for m in motions if m.role == "identify"]
     validate = [m for m in motions if m.role != "identify"]
     if not identify:
-        raise InputError(f"{path}, [[records]]: none has the role 'identify'; there is nothing to fit")
+        raise InputError(
+            f"{path}, [[records]]: none has the role 'identify'; there is nothing to fit"
+        )
     start = _core.Params(**{name: rig.declared(name).value for name in PARAMETERS})
     asked = tuple(n for n, d in rig.parameters.items() if d.fit)
     laws = []
@@ -184,7 +186,9 @@ def _standstill(rig: Rig, record: Record) -> str:
 # ---- one law -----------------------------------------------------------------------------------------
 
 
-def _problem(motions: Sequence[Motion], law: str) -> tuple[_core.CylinderProblem, NDArray[np.bool_]]:
+def _problem(
+    motions: Sequence[Motion], law: str
+) -> tuple[_core.CylinderProblem, NDArray[np.bool_]]:
     """All samples of the records, and which of them are compared."""
     records = []
     for m in motions:
@@ -249,7 +253,9 @@ def _choose(
     plain = with_start(start, **{width: PARAMETERS[width].lower})
     plain = _estimate(problem, used, plain, _DRY[:2]).params
     plain.stiction_force = plain.coulomb_force
-    names, left_out = showable(problem, used, plain, [n for n in wanted if n not in (height, width)])
+    names, left_out = showable(
+        problem, used, plain, [n for n in wanted if n not in (height, width)]
+    )
     falling = with_start(plain, **{height: 2.0 * plain.coulomb_force, width: start[width] or 1e-3})
     both, missing = showable(problem, used, falling, (*names, height, width))
     if height in both and width in both and set(names) <= set(both):
@@ -307,7 +313,7 @@ def showable(
 def collinearity(columns: Array) -> float:
     """1 / sqrt(smallest eigenvalue) of columns (n, k) of length one: 1 when they are orthogonal."""
     smallest = float(np.linalg.eigvalsh(columns.T @ columns)[0])
-    return 1.0 / np.sqrt(max(smallest, 1e-16))
+    return float(1.0 / np.sqrt(max(smallest, 1e-16)))
 
 
 def _validated(validate: Sequence[Motion], law: str, params: _core.Params) -> float:

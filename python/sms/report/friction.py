@@ -82,8 +82,7 @@ def friction_html(result: FrictionResult) -> str:
         items = "".join(f"<li>{esc(str(f))}</li>" for f in result.findings)
         parts.append(section("data-check", "Data check", f"<ul class='said'>{items}</ul>"))
     parts.append(
-        f"<p class='small'>sms {_core.__version__}; condition number "
-        f"{best.found.condition:.3g}</p>"
+        f"<p class='small'>sms {_core.__version__}; condition number {best.found.condition:.3g}</p>"
     )
     return panels_page(f"Friction: {result.title}", "".join(parts), figures)
 
@@ -99,9 +98,7 @@ def _map_view(result: FrictionResult, motion: Motion) -> dict[str, Any]:
     for f in result.laws:
         law = law_over_record(motion, f, measured, best)[rows]
         top.append(trace(speed, law, EQUATION[f.law], _COLOURS[f.law], "markers", size=3))
-        below.append(
-            trace(speed, measured[rows] - law, "", _COLOURS[f.law], "markers", size=3)
-        )
+        below.append(trace(speed, measured[rows] - law, "", _COLOURS[f.law], "markers", size=3))
     panels = [panel("friction [N]", top, share=2), panel("measured − law [N]", below)]
     return view(f"{motion.name} ({motion.role})", "velocity [mm/s]", panels)
 
