@@ -15,7 +15,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from validation import bench_friction, bench_mechanism, bench_plant, bench_simulators
+from validation import bench_flow, bench_friction, bench_mechanism, bench_plant, bench_simulators
 from validation.timing import Row
 
 COMPILED = Path("build/bench/libsms/bench/sms_bench")
@@ -33,6 +33,7 @@ def measurements(install_peers: bool) -> list[Row]:
     return [
         *bench_friction.friction_rows(compiled),
         *bench_friction.fit_rows(),
+        *bench_flow.measurements(),
         *bench_mechanism.inverse_rows(compiled),
         *bench_mechanism.motion_rows(compiled),
         *bench_simulators.simulation_rows(compiled["simulation step"] * 1e-3, install_peers),

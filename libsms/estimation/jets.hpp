@@ -10,11 +10,11 @@
 namespace sms {
 namespace estimation {
 
-// model(params, residual) writes `rows` residuals for Params<double>, and for Params<Jet> alike.
-template <typename Model>
+// model(params, residual) writes `rows` residuals for Params<double>, and for Params<Jet> alike. kWidth parameters share
+// one run of the model: 4, one AVX register of derivatives, where it costs little; more where it solves an equation.
+template <int kWidth = 4, typename Model>
 void evaluate_with_jets(const Model& model, int rows, const Params<double>& params, const std::vector<int>& free,
                         Eigen::VectorXd* residual, RowMatrix* jacobian) {
-  constexpr int kWidth = 4;  // one AVX register of derivatives: as fast as any wider choice here
   using Jet = ceres::Jet<double, kWidth>;
 
   residual->resize(rows);

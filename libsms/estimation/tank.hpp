@@ -2,7 +2,7 @@
 //
 // The test is integrated from the moment of opening with the classical Runge-Kutta method and read between the steps by
 // cubic Hermite polynomials, so that the moment of opening, a parameter, shifts the curve with an exact derivative. The
-// steps are chosen once, from the record: a hundredth of the time in which the pressure made 63 % of its way, and eight
+// steps are chosen once, from the record: a sixtieth of the time in which the pressure made 63 % of its way, and eight
 // over the opening. Once nothing changes any more, nothing is integrated any more.
 //
 // Residuals: the pressures in Pa, then the temperatures in K where they were measured.

@@ -125,7 +125,7 @@ def estimate(
     """
     bounds = [(f.name, f.lower, f.upper, 1.0 / f.known_to if f.known_to else 0.0) for f in free]
     fits = [
-        _core.fit(problem, start, bounds, weight, tolerance=1e-10, huber=huber) for start in starts
+        _core.fit(problem, start, bounds, weight, tolerance=1e-8, huber=huber) for start in starts
     ]
     best = min(fits, key=lambda fit: fit.cost)
     jacobian = best.jacobian * weight[:, None]

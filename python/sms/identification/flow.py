@@ -158,12 +158,10 @@ def fit_record(
         with_start(base, component_critical_ratio=b, component_subsonic_index=m) for b, m in STARTS
     ]
     surroundings = _surroundings(record, look, declared, heat)
-    free = [Free.of("component_conductance"), Free("component_critical_ratio", 0.0, 0.9)]
-    free += [Free("component_subsonic_index", 0.1, 30.0), *surroundings]
     problem = _problem(record, look, "iso", heat)
     weight = _weight(record, look)
     counted = _seen(problem, base, look)
-    found = estimate(problem, starts, free, weight, counted, huber)
+    found = estimate(problem, starts, _free(surroundings), weight, counted, huber)
     profiles = {name: profile(found, name) for name in (COMPONENT[1:] if with_profiles else ())}
     budget = _budget(found, declared, heat)
     spread = float(np.sqrt(sum(c.uncertainty**2 for c in budget)))
@@ -196,6 +194,16 @@ def fit_records(
     return tuple(fits)
 
 
+def fit_start(
+    record: FlowRecord, look: Look, declared: Declared, heat: str = "polytropic"
+) -> Estimate:
+    """The ISO law from its first start alone: what one fit costs."""
+    base = _start(record, look, declared)
+    problem = _problem(record, look, "iso", heat)
+    free = _free(_surroundings(record, look, declared, heat))
+    return estimate(problem, [base], free, _weight(record, look), _seen(problem, base, look))
+
+
 # ---- one fit -------------------------------------------------------------------------------------------
 
 
@@ -220,6 +228,16 @@ def _start(record: FlowRecord, look: Look, declared: Declared) -> _core.Params:
     mass_flow = params.tank_volume * slope / (ratio * params.gas_constant * params.air_temperature)
     params.component_conductance = mass_flow / (upstream * params.reference_density)
     return params
+
+
+def _free(surroundings: Sequence[Free]) -> list[Free]:
+    """C, b and m, and what is fitted beside them."""
+    return [
+        Free.of("component_conductance"),
+        Free("component_critical_ratio", 0.0, 0.9),
+        Free("component_subsonic_index", 0.1, 30.0),
+        *surroundings,
+    ]
 
 
 def _steepest(record: FlowRecord, look: Look) -> float:
