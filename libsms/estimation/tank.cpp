@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kOpeningSteps = 8;
 constexpr double kStepsToRise = 60.0;  // in the time of 63 % of the way
-constexpr double kSettled = 1e-11;     // relative change in a step
+constexpr double kSettled = 1e-9;      // relative change in a step
 
 // The pressure around the component at a time of the record: constant, or linear between measured samples.
 template <typename S>

@@ -3,7 +3,7 @@
     python -m validation.flow_matrix.trial [--repeats 200] [--seed 1] [--colour 0.0]
 
 Each repeat is a new test: another moment of opening, other noise. The tank's volume, temperature
-and pressures are what the rig says, so that C is judged on the fit's own error.
+and pressures are known exactly, so that C is judged on the fit's own error.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from sms.identification.flow import COMPONENT, SYMBOL, FlowFit, fit_record
+from sms.identification.flow import COMPONENT, SYMBOL, fit_record
 from sms.identification.flow_record import FlowRecord
 from sms.io.rig import Declaration
 from sms.parameters import PARAMETERS
@@ -31,7 +31,6 @@ from validation.flow_matrix.tank_twin import (
     true_component,
 )
 
-KNOWN = {"tank_volume": 5e-3, "ambient_pressure": 86e3, "air_temperature": 293.0}
 CASES = tuple(
     (spool, charge, supply)
     for supply in (286e3, 486e3)
@@ -41,12 +40,8 @@ CASES = tuple(
 
 
 def declared(name: str) -> Declaration:
-    """What the virtual rig's owner knows: everything of the tank, the supply within 2 kPa."""
-    if name == "supply_pressure":
-        return Declaration(486e3, 2e3)
-    if name in KNOWN:
-        return Declaration(KNOWN[name], 0.0)
-    return Declaration(PARAMETERS[name].default, PARAMETERS[name].uncertainty)
+    """What the virtual rig's owner knows: everything but the supply pressure, which is within 2 kPa."""
+    return Declaration(PARAMETERS[name].default, 2e3 if name == "supply_pressure" else 0.0)
 
 
 def one_test(
@@ -80,14 +75,6 @@ def truth_of(test: Test) -> dict[str, float]:
     return dict(zip(COMPONENT, (c.conductance, c.ratio, c.index), strict=True))
 
 
-def interval_of(fit: FlowFit, name: str) -> tuple[float, float]:
-    """95 percent; of C by the fit alone."""
-    k = fit.known[name]
-    if name == COMPONENT[0]:
-        return k.value - 1.96 * k.sd, k.value + 1.96 * k.sd
-    return k.lower, k.upper
-
-
 def cover(
     case: tuple[float, bool, float], repeats: int, seed: int, colour: float = 0.0
 ) -> Coverage:
@@ -102,7 +89,7 @@ def cover(
     for name in COMPONENT:
         true = np.array([truth_of(test)[name] for _, test in made])
         value = np.array([fit.known[name].value for fit in fits])
-        low, high = np.array([interval_of(fit, name) for fit in fits]).T
+        low, high = np.array([(fit.known[name].lower, fit.known[name].upper) for fit in fits]).T
         scale = true if name == COMPONENT[0] else 1.0
         covered[name] = float(np.mean((low <= true) & (true <= high)))
         told_rows = np.array([fit.known[name].identifiable for fit in fits])

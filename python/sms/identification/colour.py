@@ -17,6 +17,8 @@ from scipy.signal import fftconvolve
 from sms.diagnosis.result import Array
 
 LARGEST_ORDER = 12
+PATIENCE = 3
+"""Orders tried without gain before the search for the memory's length ends."""
 FORGOTTEN = 1e-3
 """Of its autocorrelation, below which a residual has forgotten its past."""
 
@@ -67,6 +69,8 @@ def colour_of(residual: Array, spent: int) -> Colour:
     r = np.array([residual[: n - lag] @ residual[lag:] for lag in range(largest + 1)]) / n
     best, chosen = n * np.log(r[0]), np.empty(0)
     for order in range(1, largest + 1):
+        if order > chosen.size + PATIENCE:
+            break
         a = solve_toeplitz(r[:order], r[1 : order + 1])
         left = r[0] - float(a @ r[1 : order + 1])
         score = n * np.log(max(left, 1e-300)) + order * np.log(n)

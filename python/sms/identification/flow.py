@@ -35,7 +35,7 @@ from sms.parameters import PARAMETERS
 
 COMPONENT = ("component_conductance", "component_critical_ratio", "component_subsonic_index")
 SYMBOL = dict(zip(COMPONENT, ("C", "b", "m"), strict=True))
-STARTS = ((0.3, 1.0), (0.45, 1.8), (0.1, 0.7))
+STARTS = ((0.35, 1.2), (0.45, 1.8), (0.1, 0.7))
 """(b, m) from which a fit starts: the cost has a valley along which they replace each other."""
 USEFUL = {"component_critical_ratio": 0.1, "component_subsonic_index": 0.5}
 """Half width of the 95 percent interval up to which a number is worth printing."""
@@ -134,12 +134,18 @@ class FlowFit:
         return self.look.faults + self.look.notes + (self.found.warnings if self.found else ())
 
 
+def declared_params(declared: Declared) -> _core.Params:
+    """Every parameter as declared."""
+    return _core.Params(**{name: declared(name).value for name in PARAMETERS})
+
+
 def fit_record(
     record: FlowRecord,
     declared: Declared,
     heat: str = "polytropic",
     huber: float = 0.0,
     with_profiles: bool = True,
+    machine: _core.Params | None = None,
 ) -> FlowFit:
     """Fit one record by both laws.
 
@@ -148,12 +154,13 @@ def fit_record(
         declared: what is known of a parameter.
         heat: "polytropic", as the source's tables, or "energy": the full energy equation.
         huber: in units of the noise; 0: least squares.
-        with_profiles: b's and m's profile likelihood; without it their intervals are 1.96 sd.
+        with_profiles: profile likelihoods; without them the intervals are 1.96 sd.
+        machine: declared_params(declared), where many records share it.
     """
     look = look_at(record)
     if look.faults:
         return FlowFit(record, look, None, {}, {}, (), None, np.nan, np.nan, heat)
-    base = _start(record, look, declared)
+    base = _start(record, look, machine or declared_params(declared))
     starts = [
         with_start(base, component_critical_ratio=b, component_subsonic_index=m) for b, m in STARTS
     ]
@@ -162,9 +169,9 @@ def fit_record(
     weight = _weight(record, look)
     counted = _seen(problem, base, look)
     found = estimate(problem, starts, _free(surroundings), weight, counted, huber)
-    profiles = {name: profile(found, name) for name in (COMPONENT[1:] if with_profiles else ())}
+    profiles = {name: profile(found, name) for name in (COMPONENT if with_profiles else ())}
     budget = _budget(found, declared, heat)
-    spread = float(np.sqrt(sum(c.uncertainty**2 for c in budget)))
+    spread = float(np.sqrt(sum(c.uncertainty**2 for c in budget[1:])))
     known = {name: _known(found, name, profiles.get(name), spread) for name in COMPONENT}
     classic = _classic(record, look, base, surroundings, weight, counted, heat, huber)
     return FlowFit(
@@ -184,7 +191,12 @@ def fit_records(
 ) -> tuple[FlowFit, ...]:
     """Fit every record, on all cores: the core works without Python's lock."""
     one = partial(
-        fit_record, declared=declared, heat=heat, huber=huber, with_profiles=with_profiles
+        fit_record,
+        declared=declared,
+        heat=heat,
+        huber=huber,
+        with_profiles=with_profiles,
+        machine=declared_params(declared),
     )
     fits = []
     with ThreadPoolExecutor(workers) as pool:
@@ -195,10 +207,16 @@ def fit_records(
 
 
 def fit_start(
-    record: FlowRecord, look: Look, declared: Declared, heat: str = "polytropic"
+    record: FlowRecord,
+    look: Look,
+    declared: Declared,
+    machine: _core.Params,
+    heat: str = "polytropic",
 ) -> Estimate:
     """The ISO law from its first start alone: what one fit costs."""
-    base = _start(record, look, declared)
+    ratio, index = STARTS[0]
+    base = _start(record, look, machine)
+    base = with_start(base, component_critical_ratio=ratio, component_subsonic_index=index)
     problem = _problem(record, look, "iso", heat)
     free = _free(_surroundings(record, look, declared, heat))
     return estimate(problem, [base], free, _weight(record, look), _seen(problem, base, look))
@@ -207,9 +225,9 @@ def fit_start(
 # ---- one fit -------------------------------------------------------------------------------------------
 
 
-def _start(record: FlowRecord, look: Look, declared: Declared) -> _core.Params:
+def _start(record: FlowRecord, look: Look, machine: _core.Params) -> _core.Params:
     """Parameters as declared, with what the record itself shows: pressures, opening, slope."""
-    params = _core.Params(**{name: declared(name).value for name in PARAMETERS})
+    params = machine.copy()
     params.supply_pressure = record.supply_pressure
     params.ambient_pressure = record.ambient_pressure
     params.tank_initial_pressure = look.initial
@@ -330,20 +348,24 @@ def _classic(
     return estimate(_problem(record, look, "classic", heat), [start], free, weight, counted, huber)
 
 
-def _known(found: Estimate, name: str, curve: Profile | None, spread: float) -> Known:
+def _known(found: Estimate, name: str, curve: Profile | None, limits: float) -> Known:
+    """`limits`: standard uncertainty of C beside the fit, which widens its interval."""
     value = float(found.value[found.index(name)])
     sd = found.sd(name)
-    if name == "component_conductance":
-        return Known(
-            name, value, sd, value - 2 * spread, value + 2 * spread, True, bool(np.isfinite(sd))
+    lower, upper = value - 1.96 * sd, value + 1.96 * sd
+    closed = bool(np.isfinite(sd))
+    if curve is not None:
+        lower, upper, closed = curve.lower, curve.upper, curve.closed
+    if name == COMPONENT[0]:
+        wider = 1.96 * limits
+        lower, upper = (
+            value - np.hypot(value - lower, wider),
+            value + np.hypot(upper - value, wider),
         )
-    if curve is None:
-        half = 1.96 * sd
-        closed = bool(np.isfinite(sd))
-        return Known(name, value, sd, value - half, value + half, closed, closed)
-    useful = USEFUL[name] * (1.0 if name == "component_critical_ratio" else max(value, 1e-9))
-    identifiable = bool(curve.closed and curve.half_width <= useful)
-    return Known(name, value, sd, curve.lower, curve.upper, curve.closed, identifiable)
+        return Known(name, value, sd, float(lower), float(upper), closed, closed)
+    useful = USEFUL[name] * (1.0 if name == COMPONENT[1] else max(value, 1e-9))
+    identifiable = bool(closed and 0.5 * (upper - lower) <= useful)
+    return Known(name, value, sd, lower, upper, closed, identifiable)
 
 
 def _budget(found: Estimate, declared: Declared, heat: str) -> tuple[Contribution, ...]:
