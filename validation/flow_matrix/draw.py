@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.flow_matrix.tank_twin import Test, delayed, matrix, read, sensor_of, simulate
+from validation.flow_matrix.tank_twin import Charging, delayed, matrix, read, sensor_of, simulate
 
 HEAD = """\
 [rig]
@@ -30,7 +30,7 @@ air_temperature = { value = "293 K", uncertainty = "1 K" }
 """
 
 
-def draw(out: Path, seed: int, tests: list[tuple[float, Test]] | None = None) -> Path:
+def draw(out: Path, seed: int, tests: list[tuple[float, Charging]] | None = None) -> Path:
     """Write records and rig file into a folder; the rig file's path."""
     rng = np.random.default_rng(seed)
     text = HEAD

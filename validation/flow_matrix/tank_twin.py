@@ -52,7 +52,7 @@ class Component:
 
 
 @dataclass(frozen=True)
-class Test:
+class Charging:
     """One charge or discharge, as it truly was."""
 
     component: Component
@@ -80,7 +80,7 @@ class Sensor:
     floor: float = 0.0  # Pa absolute
 
 
-def simulate(test: Test) -> tuple[Array, Array]:
+def simulate(test: Charging) -> tuple[Array, Array]:
     """Time and true pressure, both (n,)."""
     time = np.arange(round(test.duration * test.rate)) / test.rate
     start = test.ambient if test.charge else test.supply
@@ -105,7 +105,7 @@ def simulate(test: Test) -> tuple[Array, Array]:
     return time, pressure
 
 
-def _opened(test: Test, since: float) -> float:
+def _opened(test: Charging, since: float) -> float:
     """Share of the final opening: the step response of a damped oscillator."""
     if since <= 0.0:
         return 0.0
@@ -155,12 +155,14 @@ def duration_of(spool: float) -> float:
     return 60.0 if spool < 0.3e-3 else 40.0 if spool < 0.4e-3 else 20.0
 
 
-def matrix() -> list[tuple[float, Test]]:
+def matrix() -> list[tuple[float, Charging]]:
     """(spool, test) of every run: 28 positions, two supplies, charge and discharge."""
     return [
         (
             float(spool),
-            Test(true_component(float(spool), charge), charge, supply, duration=duration_of(spool)),
+            Charging(
+                true_component(float(spool), charge), charge, supply, duration=duration_of(spool)
+            ),
         )
         for supply in SUPPLIES
         for spool in SPOOL
@@ -168,11 +170,11 @@ def matrix() -> list[tuple[float, Test]]:
     ]
 
 
-def sensor_of(test: Test) -> Sensor:
+def sensor_of(test: Charging) -> Sensor:
     """The source's sensor: it reads nothing below 100 mbar gauge."""
     return Sensor(floor=FLOOR if not test.charge else 0.0)
 
 
-def delayed(test: Test, rng: np.random.Generator) -> Test:
+def delayed(test: Charging, rng: np.random.Generator) -> Charging:
     """The same test with its opening somewhere between two samples."""
     return replace(test, opening=float(rng.uniform(0.4, 0.6)))

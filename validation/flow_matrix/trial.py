@@ -23,7 +23,7 @@ from sms.parameters import PARAMETERS
 from validation.flow_matrix.tank_twin import (
     FLOOR,
     Sensor,
-    Test,
+    Charging,
     delayed,
     duration_of,
     read,
@@ -46,10 +46,10 @@ def declared(name: str) -> Declaration:
 
 def one_test(
     spool: float, charge: bool, supply: float, rng: np.random.Generator, colour: float = 0.0
-) -> tuple[FlowRecord, Test]:
+) -> tuple[FlowRecord, Charging]:
     """A record of the matrix and what made it."""
     component = true_component(spool, charge)
-    test = delayed(Test(component, charge, supply, duration=duration_of(spool)), rng)
+    test = delayed(Charging(component, charge, supply, duration=duration_of(spool)), rng)
     time, pressure = simulate(test)
     sensor = replace(Sensor(floor=0.0 if charge else FLOOR), colour=colour)
     reading = read(pressure, sensor, rng)
@@ -69,7 +69,7 @@ class Coverage:
     identifiable: dict[str, float]
 
 
-def truth_of(test: Test) -> dict[str, float]:
+def truth_of(test: Charging) -> dict[str, float]:
     """C, b, m by the name of their parameter."""
     c = test.component
     return dict(zip(COMPONENT, (c.conductance, c.ratio, c.index), strict=True))

@@ -232,14 +232,17 @@ def profile(found: Estimate, name: str) -> Profile:
     unit = max(found.colour.variance, 1e-300) * float(found.inflation[i])
     total = _total_cost(found, found.params)
     others = [f for f in found.free if f.name != name]
-    bounds = [(f.name, f.lower, f.upper, 1.0 / f.known_to if f.known_to else 0.0) for f in others]
+    # A breath of a pull where none is declared: what the held value leaves without effect stays put.
+    bounds = [
+        (f.name, f.lower, f.upper, 1.0 / (f.known_to or 1e6 * (f.upper - f.lower))) for f in others
+    ]
 
     def rise_at(value: float, near: _core.Params) -> tuple[float, _core.Params]:
         moved = near.copy()
         moved[name] = value
         for f in others:  # the pull is towards the start of the whole fit
-            if f.known_to:
-                moved[f.name] = found.start[f.name]
+            start = found.start[f.name] if f.known_to else near[f.name]
+            moved[f.name] = min(max(start, f.lower), f.upper)
         fit = _core.fit(
             found.problem, moved, bounds, found.weight, tolerance=1e-7, huber=found.huber
         )

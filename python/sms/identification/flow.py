@@ -168,8 +168,10 @@ def fit_record(
     problem = _problem(record, look, "iso", heat)
     weight = _weight(record, look)
     counted = _seen(problem, base, look)
-    found = estimate(problem, starts, _free(surroundings), weight, counted, huber)
-    profiles = {name: profile(found, name) for name in (COMPONENT if with_profiles else ())}
+    free = _felt(problem, starts, _free(surroundings))
+    found = estimate(problem, starts, free, weight, counted, huber)
+    fitted = [f.name for f in free]
+    profiles = {n: profile(found, n) for n in COMPONENT if with_profiles and n in fitted}
     budget = _budget(found, declared, heat)
     spread = float(np.sqrt(sum(c.uncertainty**2 for c in budget[1:])))
     known = {name: _known(found, name, profiles.get(name), spread) for name in COMPONENT}
@@ -256,6 +258,16 @@ def _free(surroundings: Sequence[Free]) -> list[Free]:
         Free("component_subsonic_index", 0.1, 30.0),
         *surroundings,
     ]
+
+
+def _felt(
+    problem: _core.TankProblem, starts: Sequence[_core.Params], free: Sequence[Free]
+) -> list[Free]:
+    """What the record feels at every start; b and m leave no trace where all flow is choked."""
+    names = [f.name for f in free]
+    columns = [problem.evaluate(start, names)[1] for start in starts]
+    norms = np.min([np.linalg.norm(c, axis=0) for c in columns], axis=0)
+    return [f for f, norm in zip(free, norms, strict=True) if norm > 0.0]
 
 
 def _steepest(record: FlowRecord, look: Look) -> float:
@@ -350,7 +362,10 @@ def _classic(
 
 def _known(found: Estimate, name: str, curve: Profile | None, limits: float) -> Known:
     """`limits`: standard uncertainty of C beside the fit, which widens its interval."""
-    value = float(found.value[found.index(name)])
+    value = found.params[name]
+    if name not in [f.name for f in found.free]:
+        bounds = next(f for f in _free(()) if f.name == name)
+        return Known(name, value, np.nan, bounds.lower, bounds.upper, False, False)
     sd = found.sd(name)
     lower, upper = value - 1.96 * sd, value + 1.96 * sd
     closed = bool(np.isfinite(sd))

@@ -131,12 +131,15 @@ def reading_noise(values: Array) -> float:
     if values.size < 4:
         return 0.0
     second = np.diff(values, 2)
+    second = second[second != 0.0]  # where a sensor is clipped it shows no noise
+    if second.size < 4:
+        return 0.0
     return float(1.4826 * np.median(np.abs(second - np.median(second))) / np.sqrt(6.0))
 
 
 def find_opening(time: Array, pressure: Array, change: float, noise: float) -> tuple[float, bool]:
     """(when the pressure begins to move, whether the record holds at least three samples before)."""
-    first = float(np.median(pressure[: max(min(pressure.size // 100, 20), 1)]))
+    first = float(np.mean(pressure[:3]))
     threshold = max(4.0 * noise, 0.01 * abs(change))
     way = np.sign(change) * (pressure - first)
     moved = np.flatnonzero((way > threshold) & (np.append(way[1:], way[-1]) > threshold))
@@ -145,7 +148,8 @@ def find_opening(time: Array, pressure: Array, change: float, noise: float) -> t
     at = int(moved[0])
     later = int(np.argmax(way > 2.0 * threshold + 0.05 * abs(change)))
     slope = (way[later] - way[at]) / (time[later] - time[at]) if later > at else np.inf
-    return float(max(time[at] - way[at] / slope, time[0])) if slope > 0.0 else float(time[at]), True
+    opening = float(time[at] - way[at] / slope) if slope > 0.0 else float(time[at])
+    return (opening, True) if opening > time[2] else (float(time[0]), False)
 
 
 def smooth_supply(time: Array, supply: Array) -> Array:
