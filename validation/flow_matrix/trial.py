@@ -22,8 +22,8 @@ from sms.parameters import PARAMETERS
 
 from validation.flow_matrix.tank_twin import (
     FLOOR,
-    Sensor,
     Charging,
+    Sensor,
     delayed,
     duration_of,
     read,

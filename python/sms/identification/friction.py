@@ -32,6 +32,8 @@ from sms.parameters import PARAMETERS
 
 Progress = Callable[[str, float], None]
 
+SPACING = 5e-3
+"""s: samples closer than this are thinned; the motion is a mean over 0.15 s, they say the same."""
 COLLINEAR = 10.0
 """Collinearity index beyond which a parameter only repeats others (Brun et al.: 5 to 20)."""
 FELT = 0.05
@@ -170,8 +172,21 @@ def _motions(rig: Rig) -> tuple[list[Motion], tuple[Finding, ...]]:
         motion = prepare(rig, replace(record, signals=signals))
         if not motion.used.any():
             raise InputError(_standstill(rig, record))
-        motions.append(motion)
+        motions.append(_thinned(motion))
     return motions, findings
+
+
+def _thinned(motion: Motion) -> Motion:
+    rows = slice(None, None, max(round(SPACING / float(np.median(np.diff(motion.time)))), 1))
+    return replace(
+        motion,
+        time=motion.time[rows],
+        velocity=motion.velocity[rows],
+        acceleration=motion.acceleration[rows],
+        signals={name: values[rows] for name, values in motion.signals.items()},
+        used=motion.used[rows],
+        stroke=motion.stroke[rows],
+    )
 
 
 def _standstill(rig: Rig, record: Record) -> str:
