@@ -54,7 +54,7 @@ class Estimate:
     params: _core.Params
     value: Array
     covariance: Array
-    """(k, k); rows and columns of a parameter at its bound are nan."""
+    """(k, k); rows and columns of a parameter at its bound, or without effect there, are nan."""
     inflation: Array
     """(k,): variance with coloured residuals over that with white ones."""
     scale: float
@@ -164,9 +164,10 @@ def estimate(
 def _covariance(
     jacobian: Array, free: Sequence[Free], at_bound: Sequence[bool], colour: Colour
 ) -> tuple[Array, Array]:
-    """Covariance (k, k) and inflation (k,), parameters at a bound taken as fixed."""
+    """Covariance (k, k) and inflation (k,); a parameter at a bound or without effect is taken as fixed."""
     k = len(free)
-    inside = np.flatnonzero(~np.array(at_bound, dtype=bool))
+    felt = np.linalg.norm(jacobian, axis=0) > 0.0
+    inside = np.flatnonzero(felt & ~np.array(at_bound, dtype=bool))
     known = np.array([1.0 / f.known_to**2 if f.known_to else 0.0 for f in free])
     prior = np.diag(known[inside])
     columns = jacobian[:, inside]
@@ -186,8 +187,8 @@ def sensitivity(found: Estimate, names: Sequence[str]) -> Array:
     """d(estimate) / d(known parameter), (k, names): by how much a wrong one would shift the fit."""
     _, columns = found.problem.evaluate(found.params, list(names))
     weighted = found.jacobian * found.weight[:, None]
-    inside = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
-    length = np.maximum(np.linalg.norm(weighted[:, inside], axis=0), 1e-300)
+    inside = np.flatnonzero(np.isfinite(np.diag(found.covariance)))
+    length = np.linalg.norm(weighted[:, inside], axis=0)
     j = weighted[:, inside] / length
     prior = np.array([1.0 / f.known_to**2 if f.known_to else 0.0 for f in found.free])[inside]
     normal = j.T @ j + np.diag(prior / length**2)
