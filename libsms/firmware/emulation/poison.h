@@ -5,13 +5,12 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <new>
-
-#include <Eigen/Core>
 
 #include "sms/forward_kinematics.hpp"
 #include "sms/inverse_kinematics.hpp"
