@@ -58,7 +58,7 @@ template <typename S>
 FrictionBranches<S> friction_branches(const Params<S>& p, const Piston<S>& piston) {
   using std::abs;
   const S& v = piston.velocity;
-  const S ramp = friction_ramp(v, p.stiction_velocity);
+  const S ramp = friction_ramp(p, v);
   const S factor = position_factor(p, piston);
   const S starting =
       ramp * seal_force(p, piston, p.coulomb_force) + abs(ramp) * (p.viscous_friction * v + p.direction_friction);

@@ -56,6 +56,22 @@ S friction_ramp(const S& velocity, const S& stiction_velocity) {
   return velocity < S(0) ? S(-1) : S(1);
 }
 
+// The same with the form of the rise left open: the sine of eq. 6.7, a hyperbolic tangent of the same slope at rest, or a
+// mixture (stiction_shape from 0 to 1). How friction rises through zero is a regularisation: no test has shown its form,
+// and a slow creep feels it.
+template <typename S>
+S friction_ramp(const Params<S>& p, const S& velocity) {
+  using std::abs;
+  using std::exp;
+  const S sine = friction_ramp(velocity, p.stiction_velocity);
+  if (is_absent(p.stiction_shape)) {
+    return sine;
+  }
+  const S x = S(3.1415926535897932) * velocity / p.stiction_velocity;
+  const S tangent = abs(x) < S(20) ? S(S(1) - S(2) / (exp(x) + S(1))) : (x < S(0) ? S(-1) : S(1));
+  return sine + p.stiction_shape * (tangent - sine);
+}
+
 // |v / width|^delta, held at 1000 from a million widths on: with delta >= 0.5 (its bound) it is no less there, and exp
 // of its negative has long underflowed. So width -> 0 needs no case of its own, derivatives included.
 template <typename S>
@@ -108,7 +124,7 @@ S friction_of_width(const Params<S>& p, const Piston<S>& piston, const S& width)
   using std::abs;
   const S& v = piston.velocity;
   const S& a = piston.acceleration;
-  const S ramp = friction_ramp(v, p.stiction_velocity);
+  const S ramp = friction_ramp(p, v);
   const bool speeding_up = (v > S(0) && a > S(0)) || (v < S(0) && a < S(0));
 
   S coulomb = p.coulomb_force;
