@@ -1,0 +1,279 @@
+// A plant held against records by multiple shooting: the record is cut into windows, each simulated from a state of its
+// own.
+//
+// A free simulation of an actuator drifts away from the record, because position is the integral of everything that is
+// slightly wrong; and its initial state is not known. Over a window of a second neither matters: the state z at its
+// beginning is whatever fits the window best. With the readings predicted by the simulation, whitened by the declared
+// noise, a window leaves
+//
+//   r(theta) = min over z of  | e(theta, z) |,        e = (predicted - measured) / noise
+//
+// The minimum is found by Levenberg-Marquardt from a guess, and the derivatives are projected off the directions
+// de/dz = Q R (variable projection; Golub and Pereyra 1973, in the simplification of Kaufman 1975):
+//
+//   dr/dtheta = (I - Q Q') de/dtheta
+//
+// r itself is e at the best z found, not its projection: where friction has a kink the search may end at a point from
+// which the linearised model promises more than there is.
+//
+// A search begins where that of the last Jacobian ended.
+//
+// So a residual and its Jacobian are those of the parameters alone, windows are independent of each other, and a window
+// is the natural block of whatever is resampled.
+//
+// A plant is a class with
+//   using Start                                        fixed-size array of the free numbers of an initial state
+//   template <S> void simulate(const Params<S>&, const Window&, const S* start, S* residual) const
+//   int channels(record), start_scale(k)
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include "estimation/problem.hpp"
+
+namespace sms {
+namespace estimation {
+
+struct Window {
+  int record;
+  int first;              // sample of the record
+  int samples;            // including the first
+  int row;                // where its residuals begin
+  int rows;               // samples times channels
+  Eigen::VectorXd start;  // where the search for the initial state begins
+};
+
+struct WindowOptions {
+  double length = 1.0;  // s, about: a record is cut evenly
+  double run_up = 0.1;  // s at the beginning of a record, only to run up what follows the command
+  int threads = 1;
+};
+
+template <typename Plant>
+class ShootingProblem : public Problem {
+ public:
+  ShootingProblem(Plant plant, const WindowOptions& options) : plant_(std::move(plant)), threads_(options.threads) {
+    for (int record = 0; record < plant_.records(); ++record) {
+      const int skipped = std::min(plant_.samples(record) / 2, static_cast<int>(options.run_up / plant_.step(record)));
+      const int samples = plant_.samples(record) - skipped;
+      const int parts = std::max(1, static_cast<int>(samples * plant_.step(record) / options.length + 0.5));
+      for (int part = 0; part < parts; ++part) {
+        const int first = skipped + static_cast<int>(static_cast<long>(samples) * part / parts);
+        const int end = skipped + static_cast<int>(static_cast<long>(samples) * (part + 1) / parts);
+        Window w{
+            record, first, end - first, rows_, (end - first) * plant_.channels(record), plant_.guess(record, first)};
+        rows_ += w.rows;
+        windows_.push_back(w);
+      }
+    }
+  }
+
+  int rows() const override { return rows_; }
+  const std::vector<Window>& windows() const { return windows_; }
+
+  void evaluate(const Params<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,
+                RowMatrix* jacobian) const override {
+    residual->resize(rows_);
+    if (jacobian != nullptr) {
+      jacobian->resize(rows_, static_cast<Eigen::Index>(free.size()));
+    }
+    in_parallel([&](std::size_t k) {
+      const Shot shot = shoot(params, windows_[k]);
+      residual->segment(windows_[k].row, windows_[k].rows) = shot.residual;
+      if (jacobian != nullptr) {
+        differentiate(params, free, windows_[k], shot, jacobian);
+        windows_[k].start = shot.start;
+      }
+    });
+  }
+
+  // Residuals before the projection, at the best initial states: predicted less measured, over the noise.
+  Eigen::VectorXd errors(const Params<double>& params) const {
+    Eigen::VectorXd out(rows_);
+    in_parallel(
+        [&](std::size_t k) { out.segment(windows_[k].row, windows_[k].rows) = shoot(params, windows_[k]).residual; });
+    return out;
+  }
+
+  // The best initial states at `params` become where later searches begin.
+  void settle(const Params<double>& params) {
+    in_parallel([&](std::size_t k) { windows_[k].start = shoot(params, windows_[k]).start; });
+  }
+
+  // Derivatives of the projected residuals against inputs that are hidden in the plant's equations: each of
+  // Plant::kHidden inputs has `knots` values per window, linear in between. Row block by row block:
+  // (rows x kHidden * knots), a window's rows belonging to its own knots.
+  RowMatrix hidden(const Params<double>& params, int knots) const {
+    RowMatrix out(rows_, Plant::kHidden * knots);
+    in_parallel(
+        [&](std::size_t k) { differentiate_hidden(params, knots, windows_[k], shoot(params, windows_[k]), &out); });
+    return out;
+  }
+
+ private:
+  static constexpr int kStart = Plant::kStart;
+  static constexpr int kWidth = 4;
+  using StartJet = ceres::Jet<double, kStart>;
+  using Jet = ceres::Jet<double, kWidth>;
+  using StartMatrix = Eigen::Matrix<double, Eigen::Dynamic, kStart>;
+
+  // A window at its best initial state.
+  struct Shot {
+    Eigen::VectorXd start;
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd basis;  // Q
+
+    template <typename Columns>
+    Columns off(const Columns& columns) const {
+      return columns - basis * (basis.transpose() * columns);
+    }
+  };
+
+  template <typename Work>
+  void in_parallel(const Work& work) const {
+    std::atomic<std::size_t> next{0};
+    const auto run = [&] {
+      for (std::size_t k = next++; k < windows_.size(); k = next++) {
+        work(k);
+      }
+    };
+    std::vector<std::thread> others;
+    for (int i = 1; i < threads_; ++i) {
+      others.emplace_back(run);
+    }
+    run();
+    for (std::thread& thread : others) {
+      thread.join();
+    }
+  }
+
+  // Simulates with derivatives against the initial state.
+  void with_start(const Params<StartJet>& params, const Window& w, const Eigen::VectorXd& start,
+                  std::vector<StartJet>* jets, Eigen::VectorXd* residual, StartMatrix* by_start) const {
+    StartJet z[kStart];
+    for (int k = 0; k < kStart; ++k) {
+      z[k] = StartJet(start[k], k);
+    }
+    plant_.simulate(params, w, z, jets->data());
+    for (int row = 0; row < w.rows; ++row) {
+      const StartJet& jet = (*jets)[static_cast<std::size_t>(row)];
+      (*residual)[row] = jet.a;
+      by_start->row(row) = jet.v.transpose();
+    }
+  }
+
+  // Levenberg-Marquardt over the initial state, until a step gains next to nothing: 0.1 of chi-square, which is one per
+  // row, or 0.1 per cent of it.
+  Shot shoot(const Params<double>& params, const Window& w) const {
+    using Normal = Eigen::Matrix<double, kStart, kStart>;
+    constexpr int kMostSteps = 12;
+    const Params<StartJet> cast_params = cast<StartJet>(params);
+    std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
+    Shot shot{w.start, Eigen::VectorXd(w.rows), {}};
+    StartMatrix by_start(w.rows, kStart), tried_by_start(w.rows, kStart);
+    Eigen::VectorXd tried_residual(w.rows);
+    with_start(cast_params, w, shot.start, &jets, &shot.residual, &by_start);
+    double damping = 1e-6;
+    for (int step = 0; step < kMostSteps; ++step) {
+      // The damping is relative to the size of each number, so that one without a trace stays where it is.
+      Normal normal = by_start.transpose() * by_start;
+      const Eigen::Matrix<double, kStart, 1> gradient = by_start.transpose() * shot.residual;
+      for (int k = 0; k < kStart; ++k) {
+        normal(k, k) += damping * normal(k, k) + 1e-3 / (Plant::start_scale(k) * Plant::start_scale(k));
+      }
+      const Eigen::Matrix<double, kStart, 1> move = normal.ldlt().solve(gradient);
+      const double cost = shot.residual.squaredNorm();
+      const double enough = 0.1 + 1e-3 * cost;
+      if (!(gradient.dot(move) > enough)) {
+        break;
+      }
+      const Eigen::VectorXd tried = shot.start - move;
+      with_start(cast_params, w, tried, &jets, &tried_residual, &tried_by_start);
+      const double gain = cost - tried_residual.squaredNorm();
+      if (gain > 0.0) {
+        shot.start = tried;
+        shot.residual.swap(tried_residual);
+        by_start.swap(tried_by_start);
+        damping = std::max(0.1 * damping, 1e-9);
+        if (gain < enough) {
+          break;
+        }
+      } else if (damping > 1e3) {
+        break;
+      } else {
+        damping = std::max(100.0 * damping, 1e-2);
+      }
+    }
+    Eigen::MatrixXd scaled = by_start;
+    for (int k = 0; k < kStart; ++k) {
+      scaled.col(k) *= Plant::start_scale(k);
+    }
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+    qr.setThreshold(1e-9);
+    qr.compute(scaled);
+    shot.basis = qr.householderQ() * Eigen::MatrixXd::Identity(w.rows, qr.rank());
+    return shot;
+  }
+
+  void differentiate(const Params<double>& params, const std::vector<int>& free, const Window& w, const Shot& shot,
+                     RowMatrix* jacobian) const {
+    std::vector<Jet> jets(static_cast<std::size_t>(w.rows));
+    Eigen::MatrixXd columns(w.rows, kWidth);
+    Jet start[kStart];
+    for (int k = 0; k < kStart; ++k) {
+      start[k] = Jet(shot.start[k]);
+    }
+    const int all = static_cast<int>(free.size());
+    for (int first = 0; first < all; first += kWidth) {
+      const int width = std::min(kWidth, all - first);
+      Params<Jet> seeded = cast<Jet>(params);
+      for (int k = 0; k < width; ++k) {
+        param(seeded, free[static_cast<std::size_t>(first + k)]).v[k] = 1.0;
+      }
+      plant_.simulate(seeded, w, start, jets.data());
+      for (int row = 0; row < w.rows; ++row) {
+        columns.row(row) = jets[static_cast<std::size_t>(row)].v.transpose();
+      }
+      jacobian->block(w.row, first, w.rows, width) = shot.off(Eigen::MatrixXd(columns.leftCols(width)));
+    }
+  }
+
+  void differentiate_hidden(const Params<double>& params, int knots, const Window& w, const Shot& shot,
+                            RowMatrix* out) const {
+    std::vector<Jet> jets(static_cast<std::size_t>(w.rows));
+    Eigen::MatrixXd columns(w.rows, kWidth);
+    const Params<Jet> plain = cast<Jet>(params);
+    Jet start[kStart];
+    for (int k = 0; k < kStart; ++k) {
+      start[k] = Jet(shot.start[k]);
+    }
+    const int all = Plant::kHidden * knots;
+    std::vector<Jet> push(static_cast<std::size_t>(all));
+    for (int first = 0; first < all; first += kWidth) {
+      const int width = std::min(kWidth, all - first);
+      std::fill(push.begin(), push.end(), Jet(0.0));
+      for (int k = 0; k < width; ++k) {
+        push[static_cast<std::size_t>(first + k)].v[k] = 1.0;
+      }
+      plant_.simulate(plain, w, start, jets.data(), push.data(), knots);
+      for (int row = 0; row < w.rows; ++row) {
+        columns.row(row) = jets[static_cast<std::size_t>(row)].v.transpose();
+      }
+      out->block(w.row, first, w.rows, width) = shot.off(Eigen::MatrixXd(columns.leftCols(width)));
+    }
+  }
+
+  Plant plant_;
+  int threads_;
+  int rows_ = 0;
+  mutable std::vector<Window> windows_;  // a start is only where a search begins, not what it finds
+};
+
+}  // namespace estimation
+}  // namespace sms
