@@ -1,4 +1,7 @@
-"""The effects that can be named: catalogue.toml, one hypothesis for each effect and measured signal."""
+"""The effects that can be named: one hypothesis for each effect and each signal or part that it can sit on.
+
+catalogue.toml is that of a cylinder's force balance, catalogue_plant.toml that of tank, bench and platform.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,8 @@ SIGNALS_IN_WORDS = {
     "chamber_pressure_lower": "lower chamber pressure",
     "chamber_pressure_upper": "upper chamber pressure",
     "extension": "position",
+    "supply_pressure": "supply pressure",
+    "chamber_pressure": "chamber pressures",
 }
 
 
@@ -25,6 +30,7 @@ class Effect:
 
     id: str
     signal: str | None
+    """The sensor it sits on, or the part of the machine ("lower"); None where there is only one."""
     kind: Literal["missing", "shifted"]
     parameters: tuple[str, ...]
     block: str
@@ -34,6 +40,13 @@ class Effect:
     needs: tuple[str, ...]
     plausible: tuple[float, float]
     separated_by: str
+    confusable: tuple[str, ...] = ()
+    of_sensor: bool = False
+    """`signal` names a measured signal, without which there is nothing to test."""
+    step: float | None = None
+    """The size at which its footprint is taken, where it has no slope at its neutral value."""
+    absolute: bool = False
+    """Of a shifted parameter: `plausible` is a shift in its unit, not relative."""
 
     @property
     def key(self) -> str:
@@ -45,36 +58,44 @@ class Effect:
         low, high = self.plausible
         if self.kind == "missing":
             return low, high
+        if self.absolute:
+            return reference + low, reference + high
         return reference * (1.0 + low), reference * (1.0 + high)
 
 
 def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
-    for signal in entry.get("signals", [None]):
-        text = {
-            key: entry[key].format(signal=SIGNALS_IN_WORDS.get(signal, ""))
-            for key in ("title", "cause")
+    of_sensor = "signals" in entry
+    for place in entry.get("signals", entry.get("parts", [None])):
+        said = SIGNALS_IN_WORDS.get(place, place)
+        text = {key: entry[key].format(signal=said, part=said) for key in ("title", "cause")}
+        text |= {
+            key: entry[key].format(signal=said, part=said) for key in ("signature", "separated_by")
         }
         yield Effect(
             id=entry["id"],
-            signal=signal,
+            signal=place,
             kind=entry["kind"],
-            parameters=tuple(p.format(signal=signal) for p in entry["parameters"]),
+            parameters=tuple(p.format(signal=place, part=place) for p in entry["parameters"]),
             block=entry["block"],
-            signature=entry["signature"],
             needs=tuple(entry["needs"]),
             plausible=(entry["plausible"][0], entry["plausible"][1]),
-            separated_by=entry["separated_by"],
+            confusable=tuple(entry.get("confusable", ())),
+            of_sensor=of_sensor,
+            step=entry.get("step"),
+            absolute=entry.get("absolute", False),
             **text,
         )
 
 
 @cache
-def catalogue() -> tuple[Effect, ...]:
-    """Every hypothesis, in the order of the file. KeyError if one names an unknown parameter."""
-    text = files("sms.diagnosis").joinpath("catalogue.toml").read_text(encoding="utf-8")
-    effects = tuple(e for entry in tomllib.loads(text)["effect"] for e in _effects(entry))
+def catalogue(kind: str = "cylinder") -> tuple[Effect, ...]:
+    """Every hypothesis for one kind of rig, in the order of the file. KeyError if one names an unknown parameter."""
+    name = "catalogue.toml" if kind == "cylinder" else "catalogue_plant.toml"
+    text = files("sms.diagnosis").joinpath(name).read_text(encoding="utf-8")
+    entries = [e for e in tomllib.loads(text)["effect"] if kind in e.get("kinds", [kind])]
+    effects = tuple(e for entry in entries for e in _effects(entry))
     for effect in effects:
-        for name in effect.parameters:
-            if name not in PARAMETERS:
-                raise KeyError(f"catalogue.toml: {effect.id} names the unknown parameter {name}")
+        for parameter in effect.parameters:
+            if parameter not in PARAMETERS:
+                raise KeyError(f"{name}: {effect.id} names the unknown parameter {parameter}")
     return effects

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.prepare import Motion, inputs_of, predict
+from sms.diagnosis.prepare import Comparison, Motion, inputs_of, predict
 from sms.diagnosis.repeatability import Repeatability, arrangement
 from sms.diagnosis.result import (
     Candidate,
@@ -104,6 +104,7 @@ class RecordEstimate:
 def record_by_record(fitted: Fitted, name: str, data: Data) -> list[RecordEstimate]:
     out = []
     for comparison in (data.identify, data.validate):
+        assert isinstance(comparison, Comparison)
         for number, motion in enumerate(comparison.motions):
             residual, jacobian = comparison.part(number).problem.evaluate(fitted.params, [name])
             column = jacobian[:, 0]
@@ -118,6 +119,7 @@ def gains(
 ) -> tuple[Gain, ...]:
     """What the extension is worth on each validate record."""
     out = []
+    assert isinstance(data.validate, Comparison)
     for number, motion in enumerate(data.validate.motions):
         part = data.validate.part(number)
         b = residual_of(part, baseline.params) ** 2
@@ -145,6 +147,7 @@ def gains(
 def remainder_of(
     extended: Fitted, data: Data, before: Repeatability, after: Repeatability
 ) -> Remainder:
+    assert isinstance(data.validate, Comparison)
     residual = residual_of(data.validate, extended.params)
     ms = float(np.mean(residual**2))
     return Remainder(

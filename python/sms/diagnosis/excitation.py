@@ -8,6 +8,7 @@ import numpy as np
 
 from sms.diagnosis.prepare import Comparison
 from sms.diagnosis.result import Array
+from sms.diagnosis.runs import Run, Runs
 
 LEVELS = 1.5
 """Ratio between the largest and the smallest mean pressure of the records."""
@@ -116,6 +117,111 @@ CHECKS: dict[str, Callable[[Comparison, float], str]] = {
 }
 
 
-def missing_excitation(needs: tuple[str, ...], data: Comparison, stroke: float) -> str:
+# ---- records that a simulation is held against ------------------------------------------------------------
+
+SMALL_OPENING = 1.0
+"""V from the centre: up to here a dead band is felt."""
+FAST_COMMAND = 5.0
+"""V/s: slower commands hide a lag of milliseconds."""
+
+
+def motion(data: Runs, stroke: float) -> str:
+    moved = max(float(np.ptp(m.signals[_position_of(m)])) for m in data.motions)
+    return "" if moved > 0.0 else "nothing moves in the identify records"
+
+
+def _position_of(run: Run) -> str:
+    return next(n for n in ("extension", "extension_1", "tank_pressure") if n in run.signals)
+
+
+def _commands(data: Runs) -> list[tuple[Run, Array]]:
+    return [
+        (m, m.signals[n]) for m in data.motions for n in m.signals if n.startswith("valve_command")
+    ]
+
+
+def small_openings(data: Runs, stroke: float) -> str:
+    centre = data.rig.declared("valve_centre").value
+    share = [float(np.mean(np.abs(c - centre) < SMALL_OPENING)) for _, c in _commands(data)]
+    if max(share) > 0.05:
+        return ""
+    return f"the command is hardly ever within {SMALL_OPENING:g} V of the valve's centre, where a dead band is felt"
+
+
+def fast_commands(data: Runs, stroke: float) -> str:
+    fastest = max(float(np.max(np.abs(np.diff(c))) / m.step) for m, c in _commands(data))
+    if fastest > FAST_COMMAND:
+        return ""
+    return f"the command changes by {fastest:.2g} V/s at most; needed are {FAST_COMMAND:g} V/s"
+
+
+def reversals(data: Runs, stroke: float) -> str:
+    direction = data.inputs["direction"]
+    share = float(np.mean(direction > 0))
+    return "" if 0.05 < share < 0.95 else "the rod moves one way only; needed are reversals"
+
+
+def long_travel(data: Runs, stroke: float) -> str:
+    span = max(
+        float(np.ptp(m.signals["extension"])) for m in data.motions if "extension" in m.signals
+    )
+    if span >= TRAVEL * stroke:
+        return ""
+    return f"the rod moves over {1e3 * span:.1f} mm of {1e3 * stroke:.0f} mm only; needed is a quarter of the stroke"
+
+
+def fast_motion(data: Runs, stroke: float) -> str:
+    fastest = float(np.quantile(np.abs(data.inputs["velocity [m/s]"]), 0.999))
+    if fastest >= FAST:
+        return ""
+    return f"the rod moves at {1e3 * fastest:.0f} mm/s at most; needed are {1e3 * FAST:.0f} mm/s"
+
+
+def accelerated(data: Runs, stroke: float) -> str:
+    largest = max(
+        float(np.quantile(np.abs(np.gradient(m.velocity, m.step)), 0.99)) for m in data.motions
+    )
+    if largest >= ACCELERATION:
+        return ""
+    return f"the rod hardly accelerates ({largest:.2f} m/s^2 at most); needed are {ACCELERATION:g} m/s^2"
+
+
+def ends(data: Runs, stroke: float) -> str:
+    cushion = data.rig.declared("cushion_length").value
+    nearest = min(
+        min(float(m.signals["extension"].min()), stroke - float(m.signals["extension"].max()))
+        for m in data.motions
+        if "extension" in m.signals
+    )
+    if nearest < 0.8 * cushion:
+        return ""
+    return (
+        f"the piston stays {1e3 * nearest:.0f} mm from either end, where a cushion of {1e3 * cushion:.0f} mm is "
+        "not felt"
+    )
+
+
+def closed_loop(data: Runs, stroke: float) -> str:
+    if data.rig.control.loop == "closed" and data.rig.control.controller == "simulated":
+        return ""
+    return "the valve's command is taken from the records, so the controller is not part of the simulation"
+
+
+RUN_CHECKS: dict[str, Callable[[Runs, float], str]] = {
+    "motion": motion,
+    "small_openings": small_openings,
+    "fast_commands": fast_commands,
+    "reversals": reversals,
+    "travel": long_travel,
+    "fast": fast_motion,
+    "accelerations": accelerated,
+    "ends": ends,
+    "closed_loop": closed_loop,
+}
+
+
+def missing_excitation(needs: tuple[str, ...], data: Comparison | Runs, stroke: float) -> str:
     """Why the records cannot show what needs this excitation; empty if they can."""
+    if isinstance(data, Runs):
+        return next((reason for n in needs if (reason := RUN_CHECKS[n](data, stroke))), "")
     return next((reason for name in needs if (reason := CHECKS[name](data, stroke))), "")

@@ -20,11 +20,13 @@ from sms.diagnosis.evidence import (
     series_of,
     value_of,
 )
+from sms.diagnosis.plant import diagnose_plant
 from sms.diagnosis.prepare import Comparison, Motion, prepare, with_role
 from sms.diagnosis.related import related_rigs
 from sms.diagnosis.repeatability import Ground, Repeatability
 from sms.diagnosis.result import Diagnosis, Finding, NotTestable, Related, Verdict
 from sms.diagnosis.rounds import Outcome, Progress, decide, find_causes, repeats_of
+from sms.diagnosis.runs import Runs
 from sms.diagnosis.search import (
     Data,
     Fitted,
@@ -61,6 +63,9 @@ def diagnose(
     faults = [f for f in findings if f.severity == "error"]
     if faults:
         return replace(blank, verdict="data-fault", sentence=words.data_fault(faults))
+
+    if rig.kind != "cylinder":
+        return diagnose_plant(rig, records, blank, rng, progress)
 
     progress("fitting the baseline", 0.1)
     motions = [prepare(rig, record) for record in records]
@@ -115,7 +120,8 @@ def split(rig: Rig, motions: Sequence[Motion]) -> Data:
     )
     first = fit(baseline_hypothesis(data, catalogue()), data.identify)
 
-    def in_blocks(comparison: Comparison) -> Comparison:
+    def in_blocks(comparison: Comparison | Runs) -> Comparison:
+        assert isinstance(comparison, Comparison)
         inputs = comparison.inputs
         record, stroke = comparison.record, comparison.stroke
         ground = Ground.of(record, stroke, inputs["extension [m]"], inputs["direction"])

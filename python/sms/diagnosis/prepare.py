@@ -100,6 +100,9 @@ class Comparison:
     motions: tuple[Motion, ...]
     strokes_per_block: int = 1
 
+    whitened = False
+    """Residuals are in the unit of the signal."""
+
     @cached_property
     def problem(self) -> _core.Problem:
         return _core.CylinderProblem([_cylinder_record(m, m.used) for m in self.motions])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sms.diagnosis.result import Diagnosis
-from sms.report import curves, related, search, verdict, worth
+from sms.report import curves, origin, related, search, verdict, worth
 from sms.report.markup import section
 from sms.report.page import page, plots
 
@@ -18,10 +18,11 @@ def report_html(diagnosis: Diagnosis) -> str:
         "conclusion": ("Conclusion", verdict.conclusion(diagnosis)),
         "curves": ("Curves", _curves(diagnosis)),
         "residual": ("Residual", _residuals(diagnosis)),
+        "origin": ("Where from", origin.origin(diagnosis)),
         "related": ("Related rigs", related.related(diagnosis)),
         "candidates": ("What was tried", search.candidates(diagnosis)),
         "not-testable": ("Not testable", search.not_testable(diagnosis)),
-        "left": ("What is left", worth.remainder(diagnosis)),
+        "left": ("What is left", worth.remainder(diagnosis) if diagnosis.hidden is None else ""),
         "next": ("Next measurement", worth.next_experiment(diagnosis)),
         "data-check": ("Data check", search.findings(diagnosis)),
         "provenance": ("Provenance", search.provenance(diagnosis)),

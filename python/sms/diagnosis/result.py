@@ -127,6 +127,39 @@ class Remainder:
 
 
 @dataclass(frozen=True)
+class Shape:
+    """A term that is missing in one equation, as a curve over one signal: a picture of what is left."""
+
+    equation: str
+    """"force", "flow of the lower chamber", ..., "reading of extension"."""
+    signal: str
+    """"velocity [m/s]" """
+    at: tuple[float, ...]
+    value: tuple[float, ...]
+    band: tuple[float, ...]
+    """Half width of 95 percent, from window to window."""
+    unit: str
+    share: float
+    """Part of the excess that this curve takes."""
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Where the error comes from: how much of the excess a hidden input in each equation takes."""
+
+    shares: dict[str, tuple[float, float, float]]
+    """Equation -> share, and its 95 percent interval over resampled windows. Each alone: they need not add up."""
+    along: dict[str, float]
+    """"force over velocity [m/s]" -> share."""
+    shape: Shape
+
+    @property
+    def equation(self) -> str:
+        """The equation that takes most."""
+        return max(self.shares, key=lambda name: self.shares[name][0])
+
+
+@dataclass(frozen=True)
 class Finding:
     """Something the data check has to say about a file."""
 
@@ -194,6 +227,10 @@ class Diagnosis:
     not_testable: tuple[NotTestable, ...] = ()
     gain: tuple[Gain, ...] = ()
     remainder: Remainder | None = None
+    hidden: Hidden | None = None
+    """Where the baseline's error comes from, for rigs that are simulated."""
+    hidden_left: Hidden | None = None
+    """The same of what the extended model leaves."""
     noise_floor: dict[str, float] = field(default_factory=dict)
     """"sample" and "stroke": rms of what differs from sample to sample and from stroke to stroke, N."""
     baseline: tuple[ParameterValue, ...] = ()

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.prepare import Comparison
 from sms.diagnosis.repeatability import Repeatability, repeatability
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.search import (
@@ -19,6 +20,7 @@ from sms.diagnosis.search import (
     judge,
     residual_of,
     try_effects,
+    unseen,
 )
 
 MOST_CAUSES = 4
@@ -60,6 +62,7 @@ class Outcome:
 def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatability:
     """How much of a model's error on the validate records repeats from stroke to stroke."""
     v = data.validate
+    assert isinstance(v, Comparison)
     return repeatability(
         residual_of(v, fitted.params),
         v.record,
@@ -77,17 +80,19 @@ def find_causes(
     floor: float,
     rng: np.random.Generator,
     progress: Progress,
+    enough: Callable[[Fitted], bool] = lambda fitted: False,
 ) -> Outcome:
     """Until nothing more is found: the best effect joins the model, with those that look alike.
 
-    floor: mean square of what does not repeat from stroke to stroke.
+    floor: mean square of what no model of the state explains. enough: whether a model leaves so little that nothing
+    more is looked for.
     """
-    original = float(np.mean(residual_of(data.validate, baseline.params) ** 2))
+    original = float(np.mean(unseen(baseline, data) ** 2))
     yardstick = Yardstick(original, floor)
     current, rounds = baseline, []
     remaining = list(effects)
     for number in range(1, MOST_CAUSES + 1):
-        if not remaining:
+        if not remaining or enough(current):
             break
         done = 0.1 + 0.75 * number / (MOST_CAUSES + 1)
         progress(f"round {number}: {len(remaining)} effects", done)

@@ -1,0 +1,50 @@
+"""How much of a prediction error a better model could take: what is left beyond what changes within 25 ms.
+
+The floor comes from the data: a declared noise may be a third off, which in squares is as large as a real effect. What
+the readings do from one sample to a few later is noise to any model of this machine; what lasts longer is not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sms.diagnosis.result import Array
+from sms.diagnosis.runs import Runs
+from sms.diagnosis.search import Data, Fitted, refitted
+
+
+@dataclass(frozen=True)
+class Excess:
+    """Mean squares of the prediction error, in units of the noise floor's. Arrays (channels,)."""
+
+    floor: Array
+    """The noise floor in units of the declared noise."""
+    identify: Array
+    """Beyond the floor, on the records that were fitted."""
+    validate: Array
+    """The same on those that were not."""
+
+    @property
+    def total(self) -> float:
+        """Over all channels and records."""
+        return float(np.mean((self.identify + self.validate) / 2.0))
+
+    @property
+    def worst(self) -> float:
+        """Of the channel that is worst off, over all records."""
+        return float(np.max((self.identify + self.validate) / 2.0))
+
+
+def excess_of(fitted: Fitted, data: Data) -> Excess:
+    """What this model leaves."""
+    assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
+    seen, unseen = fitted.fit.residual, refitted(fitted, data).fit.residual
+    floor = 0.5 * (data.identify.floor(seen) + data.validate.floor(unseen))
+    return Excess(floor, _beyond(seen, data.identify, floor), _beyond(unseen, data.validate, floor))
+
+
+def _beyond(residual: Array, runs: Runs, floor: Array) -> Array:
+    mean = [np.mean(residual[runs.channel == c] ** 2) for c in range(len(runs.channels))]
+    return np.asarray(np.array(mean) / floor - 1.0)

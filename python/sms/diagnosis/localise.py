@@ -1,0 +1,189 @@
+"""Which equation is wrong, and how: hidden inputs in the simulation.
+
+To the force balance a hidden force is added, to either chamber a hidden mass flow, to each reading a hidden error. What
+each of them would have to be is not guessed: it is any smooth function of one of the signals (velocity, extension,
+command, a pressure, time), a chain of straight lines over the signal's quantiles. Their footprints are the core's
+derivatives against an input at points of time, put together by the function's values there. How much of the excess each
+equation takes alone, by ridge regression, is its share; the function with which a single signal takes most is the shape
+of the missing term.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sms import _core
+from sms.diagnosis.result import Array, Hidden, Shape
+from sms.diagnosis.runs import Runs
+from sms.diagnosis.screening import Nuisance
+from sms.diagnosis.statistics import Index, sum_by
+
+KNOTS = 21
+"""Points of time per window, 50 ms apart."""
+PIECES = 7
+"""Values of a function of one signal."""
+INPUTS = ("force", "flow of the lower chamber", "flow of the upper chamber")
+UNITS = ("N", "kg/s", "kg/s")
+DRAWS = 199
+RIDGE = 1e-3
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Functions of one signal: their footprints (rows + known, pieces) and where their points lie."""
+
+    equation: str
+    signal: str
+    footprint: Array
+    at: Array
+    """(pieces,) values of the signal."""
+    unit: str
+
+
+def signals_of(runs: Runs) -> dict[str, Array]:
+    """What a hidden term may follow: (rows,) each."""
+    wanted = runs.inputs
+    names = [n for n in wanted if n != "direction" and not n.startswith("supply")]
+    return {n: wanted[n] for n in names}
+
+
+def hats(values: Array, at: Array) -> Array:
+    """(n, pieces): the chain of straight lines that is one at each point of `at` in turn."""
+    at = at + 1e-9 * np.ptp(at) * np.arange(len(at))
+    return np.column_stack([np.interp(values, at, row) for row in np.eye(len(at))])
+
+
+def points(values: Array) -> Array:
+    """Where the pieces meet: even in rank, so that each has data."""
+    return np.asarray(np.quantile(values, np.linspace(0.005, 0.995, PIECES)))
+
+
+def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis]:
+    """Every equation with every signal, less what the free parameters can undo."""
+    q = nuisance.basis()
+
+    def off(columns: Array) -> Array:
+        full = nuisance.with_declared(columns)
+        return np.asarray(full - q @ (q.T @ full))
+
+    hidden = runs.problem.hidden(params, KNOTS)
+    found = []
+    for signal, values in signals_of(runs).items():
+        at = points(values)
+        if np.ptp(at) == 0.0:
+            continue
+        functions = hats(values, at)
+        for number, (equation, unit) in enumerate(zip(INPUTS, UNITS, strict=True)):
+            columns = _through_plant(
+                runs, hidden[:, number * KNOTS : (number + 1) * KNOTS], functions
+            )
+            found.append(Basis(equation, signal, off(columns), at, unit))
+        for c, channel in enumerate(runs.channels):
+            errors = functions * (runs.channel == c)[:, None] / runs.noise[channel]
+            unit = "m" if channel == "extension" else "Pa"
+            found.append(
+                Basis(f"reading of {channel}", signal, off(_free_of_start(runs, errors)), at, unit)
+            )
+    return found
+
+
+def _through_plant(runs: Runs, hidden: Array, functions: Array) -> Array:
+    """Footprint of a hidden input that follows functions (rows, pieces) of a signal."""
+    out = np.zeros((len(hidden), functions.shape[1]))
+    channels = len(runs.channels)
+    for w in runs.problem.windows:
+        rows = slice(w.row, w.row + w.rows)
+        of_samples = functions[rows][::channels]
+        place = np.linspace(0, w.samples - 1, KNOTS)
+        # The mean around a knot, so that a term that jumps at a reversal is not caught by one sample.
+        half = max(1, round(0.5 * (w.samples - 1) / (KNOTS - 1)))
+        at_knots = np.array(
+            [of_samples[max(0, round(p) - half) : round(p) + half + 1].mean(axis=0) for p in place]
+        )
+        out[rows] = hidden[rows] @ at_knots
+    return out
+
+
+def _free_of_start(runs: Runs, columns: Array) -> Array:
+    """Errors of a reading less their mean in each window and channel, which an initial state undoes at the least."""
+    key = runs.block * len(runs.channels) + runs.channel
+    sizes = np.bincount(key).astype(float)
+    mean = sum_by(key, columns, len(sizes)) / sizes[:, None]
+    return np.asarray(columns - mean[key])
+
+
+def localise(
+    runs: Runs,
+    nuisance: Nuisance,
+    residual: Array,
+    params: _core.Params,
+    excess: float,
+    rng: np.random.Generator,
+) -> Hidden:
+    """Shares of the equations and the shape of the missing term; excess is the chi-square that is not noise."""
+    bases = bases_of(runs, nuisance, params)
+    full = np.concatenate([residual, nuisance.pull * nuisance.off])
+    blocks = np.concatenate([runs.block, np.full(len(nuisance.names), int(runs.block.max()) + 1)])
+    taken = {(b.equation, b.signal): _taken(b.footprint, full) for b in bases}
+    shares = {}
+    for equation in dict.fromkeys(b.equation for b in bases):
+        together = np.hstack([b.footprint for b in bases if b.equation == equation])
+        low, high = _interval(together, full, blocks, rng)
+        share = _taken(together, full) / max(excess, 1e-12)
+        shares[equation] = (
+            min(share, 1.0),
+            min(low / max(excess, 1e-12), 1.0),
+            min(high / max(excess, 1e-12), 1.0),
+        )
+    best = max(bases, key=lambda b: taken[(b.equation, b.signal)])
+    return Hidden(
+        shares,
+        {f"{e} over {s}": t / max(excess, 1e-12) for (e, s), t in taken.items()},
+        _shape(best, full, blocks, taken[(best.equation, best.signal)] / max(excess, 1e-12)),
+    )
+
+
+def _solve(columns: Array, full: Array) -> tuple[Array, Array]:
+    """Ridge estimate and its footprint's scale."""
+    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    a = columns / scale
+    x = np.linalg.solve(a.T @ a + RIDGE * np.eye(a.shape[1]), -a.T @ full)
+    return np.asarray(x / scale), scale
+
+
+def _taken(columns: Array, full: Array) -> float:
+    x, _ = _solve(columns, full)
+    return float(full @ full - np.sum((full + columns @ x) ** 2))
+
+
+def _interval(
+    columns: Array, full: Array, blocks: Index, rng: np.random.Generator
+) -> tuple[float, float]:
+    """95 percent of what is taken, windows resampled."""
+    x, _ = _solve(columns, full)
+    taken = full**2 - (full + columns @ x) ** 2
+    by_block = np.bincount(blocks, taken)
+    drawn = rng.integers(len(by_block), size=(DRAWS, len(by_block)))
+    low, high = np.quantile(by_block[drawn].sum(axis=1), [0.025, 0.975])
+    return float(low), float(high)
+
+
+def _shape(basis: Basis, full: Array, blocks: Index, share: float) -> Shape:
+    """The curve of the missing term with its band, from the scatter between windows."""
+    x, scale = _solve(basis.footprint, full)
+    a = basis.footprint / scale
+    bread = np.linalg.inv(a.T @ a + RIDGE * np.eye(a.shape[1]))
+    left = full + basis.footprint @ x
+    scores = sum_by(blocks, a * left[:, None], int(blocks.max()) + 1)
+    covariance = bread @ (scores.T @ scores) @ bread / np.outer(scale, scale)
+    return Shape(
+        basis.equation,
+        basis.signal,
+        tuple(map(float, basis.at)),
+        tuple(map(float, x - np.mean(x) if basis.equation.startswith("reading") else x)),
+        tuple(2.0 * float(np.sqrt(v)) for v in np.diag(covariance)),
+        basis.unit,
+        share,
+    )

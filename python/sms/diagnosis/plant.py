@@ -1,0 +1,373 @@
+"""The method on records that a simulation is held against: tank, bench, platform.
+
+The steps are those of method.py and the search is the same; what differs is the unit of judgement (a window simulated
+from its own initial state, not a stroke), the noise (declared), and the question of where an error comes from (hidden
+inputs in the equations, localise.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sms.diagnosis.catalogue import Effect, catalogue
+from sms.diagnosis.evidence import candidates_of
+from sms.diagnosis.excess import Excess, excess_of
+from sms.diagnosis.localise import localise
+from sms.diagnosis.plan import plan_next
+from sms.diagnosis.plant_words import conclusion, sentence
+from sms.diagnosis.result import (
+    Array,
+    Cause,
+    Diagnosis,
+    Gain,
+    Hidden,
+    Member,
+    NotTestable,
+    ParameterValue,
+    Series,
+    Verdict,
+)
+from sms.diagnosis.rounds import Outcome, Progress, find_causes
+from sms.diagnosis.runs import OUTPUTS, Run, Runs, make_run, noise_of
+from sms.diagnosis.screening import Nuisance, columns_of, project
+from sms.diagnosis.search import (
+    Data,
+    Fitted,
+    Trial,
+    baseline_hypothesis,
+    fit,
+    nuisance_of,
+    refitted,
+    testable,
+)
+from sms.diagnosis.statistics import interval, resampled, weighted_ms
+from sms.io.errors import InputError
+from sms.io.records import Record
+from sms.io.rig import Rig
+from sms.io.signals import SIGNAL_UNITS
+from sms.parameters import PARAMETERS
+
+LEFT = 0.2
+"""Of the baseline's excess: with more left, the best explanation is none."""
+LEAST = 0.6
+"""Excess over the noise floor's mean square, over all channels, below which an error is not worth a word.
+
+Two honest descriptions of one machine differ by this much: the form in which friction rises from rest, the flow through
+a valve that is nearly closed. Smaller effects may be real, but are not told from that.
+"""
+LEAST_OF_ONE = 1.2
+"""The same for the channel that is worst off."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """Everything the steps brought."""
+
+    data: Data
+    baseline: Fitted
+    outcome: Outcome
+    before: Excess
+    after: Excess
+    blind: Sequence[NotTestable]
+    verdict: Verdict
+
+    def where(self, rng: np.random.Generator) -> Hidden:
+        """Which equation the baseline's error comes from."""
+        return _hidden(self.baseline, self.data, self.before, rng)
+
+
+def make_data(rig: Rig, records: Sequence[Record]) -> Data:
+    """The records by role, as the core's problems."""
+    runs = [make_run(rig, record) for record in records]
+    noise = noise_of(rig, runs)
+
+    def of(role: str) -> Runs:
+        return Runs(rig, tuple(r for r in runs if r.role == role), noise)
+
+    return Data(rig, of("identify"), of("validate"))
+
+
+def diagnose_plant(
+    rig: Rig,
+    records: Sequence[Record],
+    blank: Diagnosis,
+    rng: np.random.Generator,
+    progress: Progress,
+) -> Diagnosis:
+    """From checked records to an answer. InputError for a kind of rig that cannot be simulated against records yet."""
+    if rig.kind not in OUTPUTS:
+        raise InputError(
+            f"{rig.path}: records of a {rig.kind} can be read and checked, but not diagnosed yet; "
+            f"what can be: cylinder, {', '.join(OUTPUTS)}"
+        )
+    if rig.control.controller == "simulated":
+        raise InputError(
+            f"{rig.path}, [control] controller: the controller cannot be simulated in a diagnosis yet; "
+            'write controller = "recorded" and record valve_command'
+        )
+    progress("fitting the baseline", 0.05)
+    case = investigate(rig, records, rng, progress)
+    return complete(blank, case, rng, progress)
+
+
+def investigate(
+    rig: Rig, records: Sequence[Record], rng: np.random.Generator, progress: Progress
+) -> Case:
+    """Baseline, rounds and verdict: all that a trial needs."""
+    effects = catalogue(rig.kind)
+    data = make_data(rig, records)
+    baseline = fit(baseline_hypothesis(data, effects), data.identify)
+    progress("looking which effects can be seen", 0.15)
+    able, blind = testable(baseline, data, effects)
+    before = excess_of(baseline, data)
+    outcome = find_causes(
+        baseline,
+        data,
+        able,
+        float(np.mean(before.floor)),
+        rng,
+        progress,
+        lambda fitted: small(excess_of(fitted, data)),
+    )
+    after = excess_of(outcome.final, data)
+    verdict = decide(outcome, before, after)
+    if verdict == "unknown":
+        outcome = replace(outcome, named=False)
+    return Case(data, baseline, outcome, before, after, blind, verdict)
+
+
+def small(excess: Excess) -> bool:
+    """Whether an error is not worth a word."""
+    return excess.total < LEAST and excess.worst < LEAST_OF_ONE
+
+
+def decide(outcome: Outcome, before: Excess, after: Excess) -> Verdict:
+    """One of the verdicts, data-fault aside."""
+    if after.total > max(LEFT * before.total, LEAST) or after.worst > max(
+        LEFT * before.worst, LEAST_OF_ONE
+    ):
+        return "unknown"
+    if not outcome.classes:
+        return "no-evidence"
+    if len(outcome.classes) > 1:
+        return "combination"
+    return "cause" if len(outcome.classes[0]) == 1 else "class"
+
+
+def complete(
+    blank: Diagnosis, case: Case, rng: np.random.Generator, progress: Progress
+) -> Diagnosis:
+    """The whole answer, in numbers and in words."""
+    data, baseline, outcome = case.data, case.baseline, case.outcome
+    causes = tuple(_cause(members, case) for members in outcome.classes)
+    final = outcome.final if outcome.named else baseline
+    progress("asking which equation is wrong", 0.85)
+    hidden = case.where(rng)
+    left = _hidden(final, data, case.after, rng) if causes else None
+    gain = _gains(baseline, final, data, case.after.floor, rng)
+    progress("choosing the next experiment", 0.9)
+    plan = plan_next(
+        case.verdict, [[m.effect for m in c] for c in outcome.classes], final, data, hidden
+    )
+    start = baseline.hypothesis.start
+    runs = data.identify
+    assert isinstance(runs, Runs)
+    return replace(
+        blank,
+        verdict=case.verdict,
+        sentence=sentence(case.verdict, causes, hidden, case.before),
+        conclusion=conclusion(case.verdict, causes, gain, hidden, left, case.before, case.after),
+        causes=causes,
+        candidates=candidates_of(outcome.rounds),
+        not_testable=tuple(case.blind),
+        gain=gain,
+        hidden=hidden,
+        hidden_left=left,
+        noise_floor={},
+        baseline=tuple(_value(baseline, n, start[n]) for n in baseline.hypothesis.free),
+        next_experiment=plan,
+        series=tuple(
+            s
+            for part in (data.identify, data.validate)
+            if isinstance(part, Runs)
+            for s in _series(part, baseline, final, data)
+        ),
+    )
+
+
+# ---- causes ------------------------------------------------------------
+
+
+def _value(fitted: Fitted, name: str, old: float, error: float | None = None) -> ParameterValue:
+    found = error if error is not None else 0.0
+    if error is None and name in fitted.hypothesis.free:
+        found = fitted.standard_error(name)
+    return ParameterValue(name, fitted.params[name], found, PARAMETERS[name].unit, old)
+
+
+def found_value(fitted: Fitted, effect: Effect, data: Data) -> ParameterValue:
+    """A cause's parameter. Its error is that of the fit or that between records, whichever is larger."""
+    name = effect.parameters[0]
+    own = fitted.standard_error(name)
+    estimates = list(record_by_record(fitted, effect, data).values())
+    weight = np.array([1.0 / e**2 for _, e in estimates])
+    values = np.array([v for v, _ in estimates])
+    between = 0.0
+    if len(values) > 1:
+        centre = float(np.sum(weight * values) / np.sum(weight))
+        between = float(
+            np.sqrt(np.sum(weight * (values - centre) ** 2) / np.sum(weight) / (len(values) - 1))
+        )
+    return _value(fitted, name, data.rig.declared(name).value, max(own, between))
+
+
+def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, tuple[float, float]]:
+    """Record -> the parameter refitted on it alone with its error, the free parameters within what is declared."""
+    out = {}
+    name = effect.parameters[0]
+    for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
+        assert isinstance(runs, Runs)
+        column = columns_of(runs.problem, at.params, at.fit.residual, [effect])
+        nuisance = nuisance_of(at)
+        if name in nuisance.names:
+            nuisance = nuisance.without(name)
+        for number, run in enumerate(runs.motions):
+            rows = runs.record == number
+            own = Nuisance(nuisance.names, nuisance.jacobian[rows], nuisance.pull, nuisance.off)
+            reduced = project(own, column[rows], [name])[:, 0]
+            size = float(reduced @ reduced)
+            if size <= 0.0:
+                continue
+            full = np.concatenate([at.fit.residual[rows], own.pull * own.off])
+            error = float(np.sqrt(np.mean(at.fit.residual[rows] ** 2) / size))
+            out[run.name] = (at.params[name] - float(reduced @ full) / size, error)
+    return out
+
+
+def _cause(members: list[Trial], case: Case) -> Cause:
+    data, final = case.data, case.outcome.final
+    first = members[0]
+    each = record_by_record(final, first.effect, data)
+    return Cause(
+        effect=first.effect.id,
+        signal=first.effect.signal,
+        kind="missing term" if first.effect.kind == "missing" else "shifted parameter",
+        block=first.effect.block,
+        title=first.effect.title,
+        explanation=first.effect.cause,
+        members=tuple(dict.fromkeys(m.effect.id for m in members)),
+        alternatives=tuple(
+            Member(
+                m.effect.id,
+                m.effect.signal,
+                m.effect.title,
+                (found_value(m.fitted, m.effect, data),),
+                first.similarity[m.effect.key],
+            )
+            for m in members[1:]
+        ),
+        parameters=(found_value(final, first.effect, data),),
+        p_value=first.p_value,
+        consistency={record: value for record, (value, _) in each.items()},
+        separated_by=" ".join(dict.fromkeys(m.effect.separated_by for m in members))
+        if len(members) > 1
+        else "",
+    )
+
+
+# ---- gain, blocks, curves ------------------------------------------------------------
+
+
+def _gains(
+    baseline: Fitted, final: Fitted, data: Data, floor: Array, rng: np.random.Generator
+) -> tuple[Gain, ...]:
+    """What the extension is worth on each validate record and signal, in the signal's unit."""
+    runs = data.validate
+    assert isinstance(runs, Runs)
+    before = refitted(baseline, data).fit.residual ** 2
+    after = refitted(final, data).fit.residual ** 2
+    counts = resampled(runs.record, runs.block, rng)
+    out = []
+    for number, run in enumerate(runs.motions):
+        for c, channel in enumerate(runs.channels):
+            rows = (runs.record == number) & (runs.channel == c)
+            b = np.where(rows, before, 0.0)
+            e = np.where(rows, after, 0.0)
+            change = 1.0 - np.sqrt(
+                weighted_ms(e, runs.block, counts)
+                / np.maximum(weighted_ms(b, runs.block, counts), 1e-300)
+            )
+            rms_b, rms_e = float(np.sqrt(before[rows].mean())), float(np.sqrt(after[rows].mean()))
+            noise = runs.noise[channel]
+            out.append(
+                Gain(
+                    run.name,
+                    channel,
+                    SIGNAL_UNITS[channel],
+                    rms_b * noise,
+                    rms_e * noise,
+                    float(np.sqrt(floor[c])) * noise,
+                    1.0 - rms_e / rms_b,
+                    *interval(change),
+                )
+            )
+    return tuple(out)
+
+
+def _hidden(fitted: Fitted, data: Data, excess: Excess, rng: np.random.Generator) -> Hidden:
+    """Which equation is wrong, from the identify records."""
+    runs = data.identify
+    assert isinstance(runs, Runs)
+    rows = len(runs.channel) / len(runs.channels)
+    chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
+    return localise(runs, nuisance_of(fitted), fitted.fit.residual, fitted.params, chi_square, rng)
+
+
+def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Series]:
+    """Measured and predicted curves, window by window from the best initial states."""
+    assert isinstance(data.validate, Runs)
+    unseen = part is data.validate
+    base = refitted(baseline, data).params if unseen else baseline.params
+    extended = refitted(final, data).params if unseen else final.params
+    errors = part.problem.errors(base), part.problem.errors(extended)
+    out = []
+    for number, run in enumerate(part.motions):
+        for c, channel in enumerate(part.channels):
+            rows = (part.record == number) & (part.channel == c)
+            measured = run.signals[channel]
+            used = np.zeros(len(run.time), dtype=np.bool_)
+            used[part.sample[rows]] = True
+            base_curve, extended_curve = measured.copy(), measured.copy()
+            base_curve[used] += errors[0][rows] * part.noise[channel]
+            extended_curve[used] += errors[1][rows] * part.noise[channel]
+            out.append(
+                Series(
+                    run.name,
+                    run.role,
+                    channel,
+                    SIGNAL_UNITS[channel],
+                    run.time,
+                    measured,
+                    base_curve,
+                    extended_curve,
+                    used,
+                    _inputs(run),
+                )
+            )
+    return out
+
+
+def _inputs(run: Run) -> dict[str, Array]:
+    found = {
+        f"{n} [{SIGNAL_UNITS[n]}]": run.signals[n]
+        for n in ("extension", "valve_command")
+        if n in run.signals
+    }
+    return found | {
+        "velocity [m/s]": run.velocity,
+        "direction": np.sign(run.velocity),
+        "time [s]": run.time - run.time[0],
+    }

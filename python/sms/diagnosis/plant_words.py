@@ -1,0 +1,100 @@
+"""The verdict on a simulated rig in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sms.diagnosis.excess import Excess
+from sms.diagnosis.result import Cause, Gain, Hidden, Verdict
+from sms.diagnosis.words import capital, explained
+from sms.units_display import format_aligned, format_percent
+from sms.units_display import words as spaced
+
+
+def sentence(verdict: Verdict, causes: Sequence[Cause], hidden: Hidden, before: Excess) -> str:
+    """What a person reads first."""
+    if verdict == "no-evidence":
+        return (
+            "No evidence that the simulation is wrong: within its declared uncertainties the model explains these "
+            "records down to their noise."
+        )
+    if verdict == "unknown":
+        return (
+            "The simulation is wrong, and no effect of the catalogue explains how. "
+            f"The error comes from {block_in_words(hidden.equation)}; {shape_in_words(hidden)}."
+        )
+    if len(causes) == 1:
+        return f"The simulation misses {explained(causes[0])}."
+    listed = "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1))
+    return f"The simulation misses {listed}."
+
+
+def block_in_words(equation: str) -> str:
+    """ "force" -> "the balance of forces on the piston"."""
+    if equation == "force":
+        return "the balance of forces on the piston"
+    if equation.startswith("flow"):
+        return f"the {equation.replace('flow', 'air flow')} (valve, tubes, leaks and heat look alike there)"
+    return f"the {equation.replace('_', ' ')}"
+
+
+def shape_in_words(hidden: Hidden) -> str:
+    """Along which signal the missing term is best drawn."""
+    shape = hidden.shape
+    signal = spaced(shape.signal.split(" [")[0])
+    return (
+        f"as a curve over {signal} it takes {format_percent(min(shape.share, 1.0))} of what is not noise "
+        f"({shape.equation.replace('_', ' ')})"
+    )
+
+
+def conclusion(
+    verdict: Verdict,
+    causes: Sequence[Cause],
+    gain: Sequence[Gain],
+    hidden: Hidden,
+    left: Hidden | None,
+    before: Excess,
+    after: Excess,
+) -> tuple[str, ...]:
+    """What an engineer would conclude, a sentence each."""
+    out = []
+    if verdict in ("cause", "class", "combination"):
+        out += [_worth(gain)]
+        shares = format_percent(max(0.0, 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)))
+        out.append(f"Of the error that is not noise, {shares} is explained.")
+    elif verdict == "unknown":
+        others = sorted(hidden.shares.items(), key=lambda item: -item[1][0])[:3]
+        listed = ", ".join(f"{name.replace('_', ' ')} {format_percent(s[0])}" for name, s in others)
+        out.append(f"What a hidden term in each equation would take alone: {listed}.")
+    if causes:
+        inside = block_of(causes[0].block)
+        if not any(word in hidden.equation for word in inside):
+            out.append(
+                f"{capital(causes[0].title)} acts elsewhere than where a hidden term takes most "
+                f"({hidden.equation.replace('_', ' ')}): look at both."
+            )
+    return tuple(out)
+
+
+def block_of(block: str) -> tuple[str, ...]:
+    """Which equations of the simulation a block of the catalogue can be seen in."""
+    return {
+        "force": ("force",),
+        "valve": ("flow",),
+        "supply": ("flow", "supply"),
+        "chamber": ("flow", "force"),
+        "control": ("flow",),
+        "sensors": ("reading", "force", "flow"),
+        "mechanism": ("reading", "force"),
+    }[block]
+
+
+def _worth(gain: Sequence[Gain]) -> str:
+    """The signals' errors before and after, the worst record of each."""
+    parts = []
+    for signal in dict.fromkeys(g.signal for g in gain):
+        worst = max((g for g in gain if g.signal == signal), key=lambda g: g.baseline_rms)
+        old, new = format_aligned([worst.baseline_rms, worst.extended_rms], worst.unit)
+        parts.append(f"{spaced(signal)} {old} to {new}")
+    return f"On records the fit has not seen, the error over a second falls: {', '.join(parts)}."

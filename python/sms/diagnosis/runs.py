@@ -1,0 +1,198 @@
+"""Records of tank, bench and platform as the core's problem: a simulation held against them, window by window.
+
+The record is cut into windows of about a second, each simulated from an initial state that fits it best
+(libsms/estimation/shooting.hpp). What comes out is in units of the declared noise. A window is the block that
+judgements resample.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import savgol_filter
+
+from sms import _core
+from sms.diagnosis.result import Array
+from sms.io.records import Record
+from sms.io.rig import Rig
+from sms.io.signals import SIGNAL_UNITS
+
+Index = NDArray[np.int64]
+
+WINDOW = 1.0
+"""s: length of a window."""
+LONGEST_STEP = 1e-3
+"""s: of the integration. At 2.5 ms a piston that stops chatters over the kink of its friction; at 1.25 ms hardly."""
+SHORT = 0.025
+"""s: what differs over this time is noise; what lasts longer a model could explain."""
+OUTPUTS = {
+    "bench": ("extension", "chamber_pressure_lower", "chamber_pressure_upper", "supply_pressure"),
+}
+"""The signals that are predicted, in the order of the core's rows."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One record, evenly sampled. Arrays (n,), SI."""
+
+    name: str
+    role: str
+    time: Array
+    signals: dict[str, Array]
+    gauge: frozenset[str]
+    conditions: dict[str, float]
+    """Parameter -> by how much it is larger in this run."""
+
+    @property
+    def step(self) -> float:
+        return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Of the extension, by local parabolas over 50 ms, m/s."""
+        width = max(5, 2 * round(0.025 / self.step) + 1)
+        return np.asarray(savgol_filter(self.signals["extension"], width, 2, 1, self.step))
+
+
+def make_run(rig: Rig, record: Record) -> Run:
+    ambient = rig.declared("ambient_pressure").value
+    signals = {
+        name: values + (ambient if name in record.gauge else 0.0)
+        for name, values in record.signals.items()
+    }
+    source = next(s for s in rig.records if s.name == record.name)
+    return Run(
+        record.name,
+        record.role,
+        signals.pop("time"),
+        signals,
+        record.gauge,
+        {n: v - rig.declared(n).value for n, v in source.conditions.items()},
+    )
+
+
+def noise_of(rig: Rig, runs: Sequence[Run]) -> dict[str, float]:
+    """Standard deviation of one sample of each output, SI: as declared, else from how neighbours differ."""
+    noise = {}
+    for signal in OUTPUTS[rig.kind]:
+        source = rig.signals.get(signal)
+        declared = None if source is None else source.noise
+        steps = [_sample_noise(r.signals[signal]) for r in runs if signal in r.signals]
+        measured = float(np.median(steps)) if steps else 1.0
+        resolution = 0.0 if source is None else source.resolution
+        noise[signal] = max(declared or measured, resolution / np.sqrt(12.0), 1e-12)
+    return noise
+
+
+def _sample_noise(values: Array) -> float:
+    """From third differences, which a smooth motion hardly has."""
+    return float(np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Several records as one problem of the core, with what a judgement needs to know of each row."""
+
+    rig: Rig
+    motions: tuple[Run, ...]
+    noise: dict[str, float]
+
+    whitened = True
+    """Residuals are in units of the declared noise."""
+
+    @cached_property
+    def channels(self) -> tuple[str, ...]:
+        """The outputs that every record has."""
+        return tuple(s for s in OUTPUTS[self.rig.kind] if all(s in m.signals for m in self.motions))
+
+    @cached_property
+    def problem(self) -> _core.BenchProblem:
+        model = self.rig.model
+        return _core.BenchProblem(
+            records=[self._bench_record(m) for m in self.motions],
+            noise={s: self.noise[s] for s in OUTPUTS["bench"]},
+            friction=model.friction,
+            valve=model.valve,
+            chambers=model.chambers,
+            window=WINDOW,
+            longest_step=LONGEST_STEP,
+            threads=int(os.environ.get("SMS_THREADS", "2")),
+        )
+
+    def _bench_record(self, run: Run) -> _core.BenchRecord:
+        s = run.signals
+        supply = s["supply_pressure"] if "supply_pressure" in self.channels else np.empty(0)
+        return _core.BenchRecord(
+            step=run.step,
+            command=s["valve_command"],
+            extension=s["extension"],
+            pressure_lower=s["chamber_pressure_lower"],
+            pressure_upper=s["chamber_pressure_upper"],
+            supply_pressure=supply,
+            conditions=run.conditions,
+        )
+
+    @cached_property
+    def record(self) -> Index:
+        """(rows,): which record a row belongs to."""
+        return self._of_windows([w.record for w in self.problem.windows])
+
+    @cached_property
+    def block(self) -> Index:
+        """(rows,): which window a row belongs to."""
+        return self._of_windows(list(range(len(self.problem.windows))))
+
+    @cached_property
+    def sample(self) -> Index:
+        """(rows,): number of the sample in its record."""
+        parts = [
+            np.repeat(w.first + np.arange(w.samples), len(self.channels))
+            for w in self.problem.windows
+        ]
+        return np.concatenate(parts).astype(np.int64)
+
+    @cached_property
+    def channel(self) -> Index:
+        """(rows,): which output, as its place in `channels`."""
+        return np.arange(self.problem.rows, dtype=np.int64) % len(self.channels)
+
+    def _of_windows(self, values: list[int]) -> Index:
+        return np.repeat(np.array(values, dtype=np.int64), [w.rows for w in self.problem.windows])
+
+    def covariate(self, values: Sequence[Array]) -> Array:
+        """(rows,) of one array (n,) a record."""
+        out = np.empty(self.problem.rows)
+        for number, of_record in enumerate(values):
+            rows = self.record == number
+            out[rows] = of_record[self.sample[rows]]
+        return out
+
+    @cached_property
+    def inputs(self) -> dict[str, Array]:
+        """(rows,) each: the signals along which a residual may be arranged, SI."""
+        names = [n for n in self.motions[0].signals if all(n in m.signals for m in self.motions)]
+        found = {
+            f"{n} [{SIGNAL_UNITS[n]}]": self.covariate([m.signals[n] for m in self.motions])
+            for n in names
+            if n != "setpoint"
+        }
+        found["velocity [m/s]"] = self.covariate([m.velocity for m in self.motions])
+        found["direction"] = np.sign(found["velocity [m/s]"])
+        found["time [s]"] = self.covariate([m.time - m.time[0] for m in self.motions])
+        return found
+
+    def floor(self, residual: Array) -> Array:
+        """(channels,): mean square of what differs within SHORT, in units of the declared noise."""
+        out = np.empty(len(self.channels))
+        for c in range(len(self.channels)):
+            lag = max(1, round(SHORT / self.motions[0].step))
+            of_channel = residual[self.channel == c]
+            same = self.block[self.channel == c]
+            together = same[lag:] == same[:-lag]
+            out[c] = 0.5 * np.mean((of_channel[lag:] - of_channel[:-lag])[together] ** 2)
+        return out

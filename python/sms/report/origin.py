@@ -1,0 +1,76 @@
+"""Where the error comes from: which equation a hidden term would have to sit in, and the term as a curve."""
+
+from __future__ import annotations
+
+from sms.diagnosis.result import Diagnosis, Hidden, Shape
+from sms.report.markup import Scale, bar, esc, section
+from sms.units_display import axis_unit, capital, format_percent, words
+
+WIDTH, HEIGHT, MARGIN = 560, 220, 46
+
+
+def origin(diagnosis: Diagnosis) -> str:
+    """Shares of the equations before the extension, and the curve of what is missing."""
+    hidden = diagnosis.hidden
+    if hidden is None:
+        return ""
+    lead = (
+        "To each equation of the simulation a hidden term is added that may follow any of the signals. What it takes "
+        "alone of the error that is not noise is shown, with its 95 % interval over resampled windows. Shares need not "
+        "add up: air that flows wrongly also moves the piston. No cause is assumed here, so this is a second opinion."
+    )
+    body = _shares(hidden) + _curve(hidden.shape, "Before the extension")
+    left = diagnosis.hidden_left
+    if diagnosis.causes and left is not None and left.shape.share > 0.05:
+        body += _curve(left.shape, "Of what the extended model leaves")
+    return section("origin", "Where the error comes from", body, lead)
+
+
+def _shares(hidden: Hidden) -> str:
+    scale = Scale(0.0, 1.0)
+    rows = "".join(
+        f'<tr><th scope="row">{esc(capital(words(name)))}</th>'
+        f"<td>{bar(scale, max(share, 0.0), 'baseline', (max(low, 0.0), max(high, 0.0)))}</td>"
+        f'<td class="number">{esc(format_percent(max(share, 0.0)))}</td></tr>'
+        for name, (share, low, high) in sorted(hidden.shares.items(), key=lambda item: -item[1][0])
+    )
+    head = "".join(f'<th scope="col">{text}</th>' for text in ("Equation", "", "Takes alone"))
+    return f'<table class="shares"><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
+
+
+def _curve(shape: Shape, title: str) -> str:
+    """The curve with its band as a small figure."""
+    name, _, unit = shape.signal.partition(" [")
+    x_unit, y_unit = axis_unit(unit.rstrip("]") or "1"), axis_unit(shape.unit)
+    x = [v * x_unit.factor for v in shape.at]
+    y = [v * y_unit.factor for v in shape.value]
+    band = [b * y_unit.factor for b in shape.band]
+    low = min(0.0, *(v - b for v, b in zip(y, band, strict=True)))
+    high = max(0.0, *(v + b for v, b in zip(y, band, strict=True)))
+    span_x, span_y = max(x[-1] - x[0], 1e-300), max(high - low, 1e-300)
+
+    def at(a: float, b: float) -> str:
+        left = MARGIN + (a - x[0]) / span_x * (WIDTH - 2 * MARGIN)
+        top = HEIGHT - MARGIN - (b - low) / span_y * (HEIGHT - 1.6 * MARGIN)
+        return f"{left:.1f},{top:.1f}"
+
+    upper = [at(a, v + b) for a, v, b in zip(x, y, band, strict=True)]
+    lower = [at(a, v - b) for a, v, b in zip(x, y, band, strict=True)]
+    line = " ".join(at(a, v) for a, v in zip(x, y, strict=True))
+    zero = f"{at(x[0], 0.0)} {at(x[-1], 0.0)}"
+    caption = (
+        f"{title}: the missing term in {words(shape.equation)} as a curve over {words(name)}, with its 95 % band. "
+        f"It takes {format_percent(min(max(shape.share, 0.0), 1.0))} of the error that is not noise. It is a picture "
+        "of what is missing, not an explanation."
+    )
+    return (
+        f'<figure class="shape"><svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{esc(caption)}" '
+        'style="max-width:40rem;width:100%">'
+        f'<polyline points="{zero}" fill="none" stroke="#888" stroke-width="1"/>'
+        f'<polygon points="{" ".join(upper + lower[::-1])}" fill="#4477aa33"/>'
+        f'<polyline points="{line}" fill="none" stroke="#4477aa" stroke-width="2"/>'
+        f'<text x="{WIDTH / 2}" y="{HEIGHT - 8}" text-anchor="middle" font-size="12">{esc(words(name))} '
+        f"[{esc(x_unit.label)}], {x[0]:.3g} to {x[-1]:.3g}</text>"
+        f'<text x="6" y="16" font-size="12">{esc(words(shape.equation))} [{esc(y_unit.label)}], {low:.3g} to {high:.3g}'
+        f"</text></svg><figcaption>{esc(caption)}</figcaption></figure>"
+    )

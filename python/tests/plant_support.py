@@ -1,0 +1,69 @@
+"""Records of a bench actuator made with the core itself: for tests of the method, not of its truth.
+
+(Trials with an independent simulator are under validation/hidden_effects.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from sms import Params, simulate_bench
+from sms.io import write_record
+
+Array = NDArray[np.float64]
+
+NOISE = {"extension": 7e-5, "chamber_pressure_lower": 300.0, "chamber_pressure_upper": 300.0}
+LENGTH = 4.0
+EVERY = 10
+"""Control periods of 1 ms in a sample."""
+
+RIG = """
+[rig]
+kind = "bench"
+title = "A bench"
+
+[signals]
+time = "time"
+valve_command = "valve_command"
+extension = { noise = "0.07 mm" }
+chamber_pressure_lower = { noise = "300 Pa" }
+chamber_pressure_upper = { noise = "300 Pa" }
+
+[parameters]
+mass_flow_gain = { value = 1.5, uncertainty = 0.1 }
+valve_centre = { value = "5 V", uncertainty = "0.02 V" }
+"""
+
+
+def setpoint(kind: int, time: Array) -> Array:
+    """Extension, m: two kinds of motion for each role."""
+    waves = (
+        0.06 * np.sin(3.3 * time) + 0.03 * np.sin(9.1 * time),
+        0.08 * np.sign(np.sin(1.7 * time)) * np.minimum(1.0, np.abs(3.0 * np.sin(1.7 * time))),
+        0.07 * np.sin(2.1 * time + 1.0) + 0.02 * np.sin(12.0 * time),
+        0.05 * np.sin(4.4 * time) * np.cos(0.7 * time),
+    )
+    return np.asarray(0.2 + waves[kind] - waves[kind][0])
+
+
+def write_bench(folder: Path, seed: int, truth: Mapping[str, float]) -> Path:
+    """Two records to identify with and two to validate with, of a machine with these parameters."""
+    random = np.random.default_rng(seed)
+    machine = Params(proportional_gain=8.0, **truth)
+    text = RIG
+    for number, role in enumerate(("identify", "identify", "validate", "validate")):
+        time = 1e-3 * np.arange(0.0, LENGTH / 1e-3)
+        run = simulate_bench(
+            setpoint(number, time), controller="pid", params=machine, tolerance=1e-6
+        )
+        signals = {"time": time[::EVERY], "valve_command": run["valve_command"][::EVERY]}
+        for name, size in NOISE.items():
+            clean = run[name][::EVERY]
+            signals[name] = clean + random.normal(0.0, size, clean.size)
+        write_record(folder / f"run{number}.csv", signals)
+        text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
+    (folder / "rig.toml").write_text(text)
+    return folder / "rig.toml"

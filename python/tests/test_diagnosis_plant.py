@@ -1,0 +1,177 @@
+"""The diagnosis of a simulated rig: windows, screening, one named effect, and a healthy bench."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from io_support import draw
+from numpy.typing import NDArray
+from plant_support import write_bench
+from sms import _core
+from sms.diagnosis import diagnose
+from sms.diagnosis.catalogue import catalogue
+from sms.diagnosis.gauss_newton import Free, fit_windows
+from sms.diagnosis.localise import hats
+from sms.diagnosis.screening import Nuisance, project, screen
+from sms.io import InputError
+
+pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
+Array = NDArray[np.float64]
+
+IDS = (
+    *("presliding", "valve_leakage", "piston_leakage", "fitting_leakage"),
+    *("spool_lag", "command_delay", "dead_band_width", "valve_centre_offset"),
+    *("flow_conductance", "exhaust_restriction", "supply_droop", "supply_setpoint"),
+    *("dead_volume", "tube", "polytropic_index", "heat_transfer"),
+    *(
+        "pressure_dependent_friction",
+        "direction_dependent_friction",
+        "friction_lag",
+        "position_dependent_friction",
+    ),
+    *("viscous_friction", "coulomb_friction", "exponential_friction", "end_cushioning"),
+    *("moving_mass", "centre_of_gravity", "panhard_friction", "backlash"),
+    *("frame_compliance", "sensor_gain", "sensor_offset", "sensor_lag"),
+    *("clock_skew", "ambient_pressure", "controller_mismatch"),
+)
+
+
+# ---- catalogue -----------------------------------------------------------------------------------
+
+
+def test_the_catalogue_has_every_effect_with_all_its_words() -> None:
+    effects = [e for kind in ("tank", "bench", "platform") for e in catalogue(kind)]
+    assert {e.id for e in effects} >= set(IDS)
+    known = {e.id for e in effects}
+    for effect in effects:
+        assert all(
+            (effect.title, effect.cause, effect.signature, effect.separated_by, effect.needs)
+        )
+        assert set(effect.confusable) <= known, effect.id
+        assert "{" not in effect.title + effect.cause + effect.signature + effect.separated_by
+
+
+def test_missing_terms_are_neutral_by_default() -> None:
+    params = _core.Params()
+    for kind in ("tank", "bench", "platform"):
+        for effect in catalogue(kind):
+            if effect.kind == "missing":
+                assert all(params[name] == 0.0 for name in effect.parameters), effect.key
+
+
+# ---- numerics ------------------------------------------------------------------------------------
+
+
+class Line:
+    """A linear problem with known answer, as the core's problems look."""
+
+    def __init__(self, columns: Array, target: Array) -> None:
+        self.columns, self.target = columns, target
+
+    def evaluate(self, params: _core.Params, names: list[str] | None = None) -> tuple[Array, Array]:
+        value = np.array([params["coulomb_force"], params["viscous_friction"]])
+        order = {"coulomb_force": 0, "viscous_friction": 1}
+        chosen = [order[n] for n in names or []]
+        return self.columns @ value - self.target, self.columns[:, chosen]
+
+
+def test_a_fit_within_bounds_and_pulls_is_the_known_least_squares() -> None:
+    random = draw("fit_windows")
+    columns = random.normal(size=(200, 2)) * [0.1, 0.01]
+    target = columns @ [45.0, 700.0] + random.normal(size=200)
+    start = _core.Params(coulomb_force=38.0, viscous_friction=530.0)
+    free = [
+        Free("coulomb_force", 30.0, 60.0, 0.25, 38.0),
+        Free("viscous_friction", 480.0, 580.0, 0.0, 530.0),
+    ]
+    found = fit_windows(Line(columns, target), start, free)  # type: ignore[arg-type]
+    held = 580.0  # the free optimum lies beyond the bound
+    a, b = columns[:, 0], target - columns[:, 1] * held
+    expected = (a @ b + 0.25**2 * 38.0) / (a @ a + 0.25**2)
+    assert found.params["viscous_friction"] == pytest.approx(held)
+    assert found.params["coulomb_force"] == pytest.approx(expected, rel=1e-6)
+    assert found.at_bound == [False, True]
+
+
+def test_screening_finds_the_column_that_is_there_and_none_where_there_is_none() -> None:
+    random = draw("screening")
+    n, blocks = 2000, np.repeat(np.arange(20), 100)
+    columns = random.normal(size=(n, 30))
+    free = Nuisance(["a", "b"], random.normal(size=(n, 2)), np.zeros(2), np.zeros(2))
+    footprint = project(free, columns, [f"c{k}" for k in range(30)])
+    basis = free.basis()
+    allowed = np.ones((30, 2), dtype=np.bool_)
+    noise = random.normal(size=n)
+    noise -= (basis @ (basis.T @ np.concatenate([noise, np.zeros(2)])))[:n]
+    quiet = screen(footprint, free, noise, blocks, allowed, random)
+    assert quiet.p_value.min() > 0.001
+    loud = screen(footprint, free, noise - 0.5 * footprint[:n, 7], blocks, allowed, random)
+    assert int(np.argmax(loud.gain)) == 7
+    assert loud.p_value[7] <= 0.002
+    assert loud.estimate[7] == pytest.approx(0.5, abs=5.0 * loud.error[7])
+    allowed[7] = [True, False]
+    assert (
+        screen(footprint, free, noise - 0.5 * footprint[:n, 7], blocks, allowed, random).p_value[7]
+        == 1.0
+    )
+
+
+def test_a_known_parameter_is_no_rival_beyond_its_uncertainty() -> None:
+    column = np.sin(np.linspace(0.0, 9.0, 500))[:, None]
+    same = column.copy()
+    for pull, left in ((0.0, 0.0), (1e6, 1.0)):
+        rest = project(Nuisance(["a"], same, np.array([pull]), np.zeros(1)), column, ["b"])
+        assert np.linalg.norm(rest) / np.linalg.norm(column) == pytest.approx(left, abs=1e-3)
+
+
+def test_hats_are_a_partition_of_one() -> None:
+    functions = hats(np.linspace(-1.0, 2.0, 50), np.linspace(-1.0, 2.0, 5))
+    assert functions.sum(axis=1) == pytest.approx(np.ones(50))
+    assert functions.min() >= 0.0
+
+
+# ---- the whole method ------------------------------------------------------------------------------
+
+
+def test_a_healthy_bench_gives_no_evidence(tmp_path: Path) -> None:
+    answer = diagnose(write_bench(tmp_path, 1, {}))
+    assert (answer.verdict, answer.causes) == ("no-evidence", ())
+    assert all(g.baseline_rms < 1.3 * g.noise_floor for g in answer.gain)
+
+
+def test_a_leak_past_the_piston_is_named_with_its_size(tmp_path: Path) -> None:
+    leak = 3e-9  # kg/(s Pa)
+    answer = diagnose(write_bench(tmp_path, 2, {"piston_leakage": leak}))
+    assert answer.verdict in ("cause", "class")
+    (cause,) = answer.causes
+    assert "piston_leakage" in cause.members and len(cause.members) <= 3
+    every = {cause.effect: cause.parameters[0]} | {
+        a.effect: a.parameters[0] for a in cause.alternatives
+    }
+    found = every["piston_leakage"]
+    assert found.value == pytest.approx(leak, abs=max(3.0 * found.standard_error, 0.05 * leak))
+    assert answer.hidden is not None
+    assert all(g.extended_rms < 1.3 * g.noise_floor for g in answer.gain)
+
+
+def test_a_kind_that_cannot_be_diagnosed_yet_says_so(tmp_path: Path) -> None:
+    path = write_bench(tmp_path, 3, {})
+    text = path.read_text() + '\n[control]\nloop = "closed"\ncontroller = "simulated"\n'
+    path.write_text(text)
+    with pytest.raises(InputError, match='write controller = "recorded"'):
+        diagnose(path)
+
+
+def test_a_dead_channel_is_a_data_fault(tmp_path: Path) -> None:
+    path = write_bench(tmp_path, 4, {})
+    file = tmp_path / "run0.csv"
+    head, *rows = file.read_text().splitlines()
+    column = head.split(",").index("chamber_pressure_upper [Pa]")
+    cells = [row.split(",") for row in rows]
+    for row in cells[100:]:
+        row[column] = cells[100][column]
+    file.write_text("\n".join([head, *(",".join(row) for row in cells)]) + "\n")
+    answer = diagnose(path)
+    assert (answer.verdict, answer.causes) == ("data-fault", ())
