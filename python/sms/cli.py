@@ -19,6 +19,7 @@ from sms import (
     cli_noise,
     cli_simulate,
     cli_study,
+    cli_trials,
     cli_validate,
 )
 from sms.io.errors import InputError
@@ -108,6 +109,7 @@ cli_study.register(app)
 cli_can.register(app)
 cli_noise.register(app)
 cli_validate.register(app)
+cli_trials.register(app)
 
 
 def main() -> None:

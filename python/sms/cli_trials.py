@@ -1,0 +1,102 @@
+"""The command `sms trials`: effects hidden in virtual measurements, and what the diagnosis says of them."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from sms.io.errors import InputError
+
+if TYPE_CHECKING:
+    pass
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command(
+        epilog="Example: **sms trials --rig bench --count 200 --out trials** takes about half an hour on two cores. "
+        "Stopped with Ctrl-C it goes on where it was when called again with the same --out and --seed."
+    )(trials)
+
+
+def trials(
+    rig: Annotated[str, typer.Option(help="What is measured: bench.")] = "bench",
+    count: Annotated[int, typer.Option(min=1, help="How many trials.")] = 40,
+    seed: Annotated[
+        int | None, typer.Option(help="Seed of the first; fresh and printed if left out.")
+    ] = None,
+    multiple: Annotated[
+        float, typer.Option(help="Size of the hidden effect, times its detection limit.")
+    ] = 3.0,
+    out: Annotated[Path, typer.Option(help="Folder for trials.jsonl and trials.html.")] = Path(
+        "trials"
+    ),
+    workers: Annotated[int, typer.Option(min=1, help="Processes on this machine.")] = 2,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            help="Address of a Dask scheduler (tcp://...); needs the package distributed."
+        ),
+    ] = None,
+) -> None:
+    """Hide effects in virtual measurements, diagnose them blind, and write the confusion matrix.
+
+    Half of the trials hide an effect of the catalogue, a fifth nothing, a fifth something that the catalogue does not
+    have, a tenth two effects at once. The truth is sealed before the diagnosis begins and opened after. The simulator
+    that makes the measurements is independent of the core; it lies in the project's checkout, so the command has to be
+    run there.
+    """
+    try:
+        from validation.hidden_effects import plant_trial  # noqa: PLC0415 (only in a checkout)
+    except ImportError:
+        raise InputError(
+            "the virtual rigs are part of the project's checkout and need numba: run this there, "
+            "as `.venv/bin/python -m sms.cli trials`, after ./dev build"
+        ) from None
+    first = secrets.randbelow(10**6) if seed is None else seed
+    console = Console()
+    console.print(f"[dim]--rig {rig} --seed {first} --count {count} --multiple {multiple:g}[/dim]")
+    wanted = plant_trial.tasks(rig, first, count, multiple)
+    file = out / "trials.jsonl"
+    columns = (
+        TextColumn("hiding and finding"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=count)
+        have = plant_trial.done_already(file)
+        progress.advance(task, sum((t.kind, t.seed, t.sort, t.multiple) in have for t in wanted))
+        outcomes = plant_trial.run_tasks(
+            wanted, file, workers, scheduler, lambda outcome: progress.advance(task)
+        )
+    console.print(summary(plant_trial.goals(outcomes)))
+    for o in outcomes:
+        if not o.right:
+            hidden = " + ".join(o.hidden) or "nothing"
+            console.print(f"[dim]seed {o.seed}[/dim] hidden {hidden}, said {o.said}")
+    from sms.io.write import write_text_atomically  # noqa: PLC0415
+    from sms.report.trials import trials_html  # noqa: PLC0415 (plotly takes a second)
+
+    page = out / "trials.html"
+    write_text_atomically(page, trials_html(rig, first, multiple, outcomes, plant_trial))
+    console.print(f"[dim]written: {page}, {file}[/dim]")
+
+
+def summary(goals: Sequence[Any]) -> Table:
+    """The goals, counted."""
+    table = Table(title="what came out", title_justify="left", title_style="bold", box=None)
+    for name in ("", "count", "of", "share", "wanted"):
+        table.add_column(name, justify="left" if name == "" else "right")
+    for g in goals:
+        share = f"{100 * g.share:.0f} %" if g.of else "-"
+        table.add_row(g.what, str(g.count), str(g.of), share, g.wanted)
+    return table
