@@ -1,0 +1,77 @@
+"""Blind trials on the virtual bench: a small draw here, a larger one with fresh seeds in ./dev test --full."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import asdict
+from json import dumps
+from pathlib import Path
+
+import pytest
+
+from validation.hidden_effects.plant_trial import (
+    Outcome,
+    Task,
+    confusion,
+    done_already,
+    goals,
+    run_task,
+    run_tasks,
+    tasks,
+)
+
+FRESH = 20
+
+
+def outcome(sort: str, hidden: list[str], verdict: str, *named: list[str]) -> Outcome:
+    return Outcome("bench", 1, sort, 3.0, hidden, [1.0] * len(hidden), verdict, list(named))
+
+
+def test_the_judge_can_tell_right_from_wrong() -> None:
+    leak, lag = "piston_leakage", "spool_lag"
+    assert outcome("catalogue", [leak], "cause", [leak]).right
+    assert outcome("catalogue", [leak], "class", [lag, leak]).right
+    assert not outcome("catalogue", [leak], "class", [lag, leak, "a", "b"]).right
+    assert not outcome("catalogue", [leak], "combination", [leak], [lag]).right
+    assert outcome("catalogue", [leak], "combination", [leak], [lag]).wrong_name
+    assert not outcome("catalogue", [leak], "unknown").wrong_name
+    assert outcome("healthy", [], "no-evidence").right
+    assert not outcome("healthy", [], "unknown").right
+    assert outcome("outside", ["bent_rod"], "unknown").right
+    assert outcome("outside", ["bent_rod"], "cause", [leak]).wrong_name
+    assert outcome("pair", [leak, lag], "cause", [leak]).right
+    assert not outcome("pair", [leak, lag], "combination", [leak], ["tube"]).right
+
+
+def test_goals_and_the_confusion_matrix_are_counts() -> None:
+    outcomes = [outcome("healthy", [], "no-evidence"), outcome("healthy", [], "unknown")]
+    alarms = next(g for g in goals(outcomes) if "healthy" in g.what)
+    assert (alarms.count, alarms.of, alarms.share) == (1, 2, 0.5)
+    assert confusion(outcomes)["nothing"] == {"no-evidence": 1, "unknown": 1}
+
+
+def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
+    wanted = tasks("bench", 1, 1, 3.0)
+    done = outcome(wanted[0].sort, ["piston_leakage"], "cause", ["piston_leakage"])
+    file = tmp_path / "trials.jsonl"
+    file.write_text(dumps(asdict(done)) + "\n" + '{"kind": "ben')
+    assert list(done_already(file)) == [("bench", 1, wanted[0].sort, 3.0)]
+    assert run_tasks(wanted, file, workers=1) == [done]
+
+
+@pytest.mark.parametrize("sort", ["healthy", "catalogue"])
+def test_one_drawn_bench_of_each_sort(sort: str) -> None:
+    seed = {"healthy": 5001, "catalogue": 5002}[sort]
+    found = run_task(Task("bench", seed, sort, 3.0))
+    assert found.right, found
+
+
+@pytest.mark.full
+def test_fresh_benches() -> None:
+    first = secrets.randbelow(10**6)
+    outcomes = [run_task(task) for task in tasks("bench", first, FRESH, 3.0)]
+    for g in goals(outcomes):
+        print(f"seed {first}: {g.what}: {g.count} of {g.of}")
+    ill = [o for o in outcomes if o.sort == "catalogue"]
+    assert sum(o.right for o in ill) >= 0.7 * len(ill)
+    assert all(o.right for o in outcomes if o.sort == "healthy")
