@@ -144,7 +144,7 @@ void bind_bench(py::module_& m) {
   py::class_<BenchProblem, est::Problem>(m, "BenchProblem", "Prediction errors over windows, in units of the noise.")
       .def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
-           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 2.5e-3,
+           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
            py::arg("threads") = 1)
       .def_property_readonly("windows", &BenchProblem::windows)
       .def("settle", &BenchProblem::settle, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
