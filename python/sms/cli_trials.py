@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command(
-        epilog="Example: **sms trials --rig bench --count 200 --out trials** takes about half an hour on two cores. "
-        "Stopped with Ctrl-C it goes on where it was when called again with the same --out and --seed."
+        epilog="Example: **sms trials --rig bench --count 200 --out trials**. A trial takes some twenty "
+        "seconds of one core. Stopped with Ctrl-C, it goes on where it was when called again with the "
+        "same --out and --seed."
     )(trials)
 
 
@@ -41,9 +42,7 @@ def trials(
     workers: Annotated[int, typer.Option(min=1, help="Processes on this machine.")] = 2,
     scheduler: Annotated[
         str | None,
-        typer.Option(
-            help="Address of a Dask scheduler (tcp://...); needs the package distributed."
-        ),
+        typer.Option(help="Address of a Dask scheduler (tcp://...); needs the extra sms[cluster]."),
     ] = None,
 ) -> None:
     """Hide effects in virtual measurements, diagnose them blind, and write the confusion matrix.

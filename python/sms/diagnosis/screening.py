@@ -66,7 +66,8 @@ class Nuisance:
     def with_declared(self, rows: Array) -> Array:
         """Rows (n,) or (n, m) with zeros for what is declared below."""
         below: Array = np.zeros((len(self.names), *rows.shape[1:]))
-        return np.concatenate([rows, below])
+        out: Array = np.concatenate([rows, below])
+        return out
 
     def basis(self) -> Array:
         """(n + k, r): an orthonormal basis of what the free parameters can do."""
