@@ -75,30 +75,16 @@ std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const est::Problem& problem,
 
 using BenchProblem = est::ShootingProblem<est::BenchPlant>;
 
-template <typename Law>
-Law law_of(const std::map<std::string, Law>& laws, const std::string& name) {
-  const auto found = laws.find(name);
-  if (found == laws.end()) {
-    throw py::value_error("there is no law '" + name + "'");
-  }
-  return found->second;
-}
-
 sms::ActuatorLaws make_laws(const std::string& friction, const std::string& valve, const std::string& chambers) {
   using sms::ChamberLaw;
-  using sms::FrictionLaw;
   using sms::ValveLaw;
-  return {law_of<ValveLaw>({{"iso_0_4_mpa", ValveLaw::iso_0_4_mpa},
+  return {choice<ValveLaw>("valve", valve,
+                           {{"iso_0_4_mpa", ValveLaw::iso_0_4_mpa},
                             {"iso_0_2_mpa", ValveLaw::iso_0_2_mpa},
-                            {"classic", ValveLaw::classic}},
-                           valve),
-          law_of<FrictionLaw>({{"acceleration_dependent", FrictionLaw::acceleration_dependent},
-                               {"two_branch", FrictionLaw::two_branch},
-                               {"stribeck", FrictionLaw::stribeck},
-                               {"dahl", FrictionLaw::dahl},
-                               {"lugre", FrictionLaw::lugre}},
-                              friction),
-          law_of<ChamberLaw>({{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}, chambers),
+                            {"classic", ValveLaw::classic}}),
+          friction_law(friction),
+          choice<ChamberLaw>("chambers", chambers,
+                             {{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}),
           false};
 }
 
