@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-namespace sms_bench {
+namespace sms_timing {
 
 // What main() takes from the command line: how often each piece of work is done at most, and which alone, if not all.
 // A round should be short, about a millisecond, so that some of them pass without an interruption.
@@ -47,4 +47,4 @@ void friction();
 void mechanism();
 void plant();
 
-}  // namespace sms_bench
+}  // namespace sms_timing

@@ -5,7 +5,7 @@
 #include "bench.hpp"
 #include "sms/sms.h"
 
-namespace sms_bench {
+namespace sms_timing {
 namespace {
 
 constexpr int kSamples = 20000;
@@ -47,4 +47,4 @@ void friction() {
   one_call_a_sample("friction, float", paramsf, &sms_frictionf);
 }
 
-}  // namespace sms_bench
+}  // namespace sms_timing

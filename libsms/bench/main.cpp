@@ -5,12 +5,12 @@
 
 int main(int argc, char** argv) {
   if (argc > 1) {
-    sms_bench::rounds = std::atoi(argv[1]);
+    sms_timing::rounds = std::atoi(argv[1]);
   }
   if (argc > 2) {
-    sms_bench::only = argv[2];
+    sms_timing::only = argv[2];
   }
-  sms_bench::friction();
-  sms_bench::mechanism();
-  sms_bench::plant();
+  sms_timing::friction();
+  sms_timing::mechanism();
+  sms_timing::plant();
 }

@@ -11,7 +11,7 @@
 #include "sms/dynamics.hpp"
 #include "sms/sms.h"
 
-namespace sms_bench {
+namespace sms_timing {
 namespace {
 
 constexpr int kSamples = 2000;
@@ -216,4 +216,4 @@ void mechanism() {
   batch();
 }
 
-}  // namespace sms_bench
+}  // namespace sms_timing

@@ -7,7 +7,7 @@
 #include "bench.hpp"
 #include "sms/simulate.hpp"
 
-namespace sms_bench {
+namespace sms_timing {
 namespace {
 
 using Platform = sms::Platform<double>;
@@ -80,4 +80,4 @@ void plant() {
   });
 }
 
-}  // namespace sms_bench
+}  // namespace sms_timing
