@@ -7,33 +7,6 @@ import numpy
 import numpy.typing
 import typing
 __all__: list[str] = ['BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'TankProblem', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
-class BenchProblem(Problem):
-    """
-    Prediction errors over windows, in units of the noise.
-    """
-    def __init__(self, *, records: collections.abc.Sequence[BenchRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
-        ...
-    def errors(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        (rows,): predicted less measured over the noise, at the best initial states.
-        """
-    def hidden(self, params: Params, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (rows, 3 knots): derivatives against a hidden force and hidden flows into either chamber, in each window.
-        """
-    def settle(self, params: Params) -> None:
-        """
-        Let later searches for initial states begin at the best ones of these parameters.
-        """
-    @property
-    def windows(self) -> list[Window]:
-        ...
-class BenchRecord:
-    """
-    One evenly sampled record of the rig 'bench'; arrays (n,), SI.
-    """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
-        ...
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -176,6 +149,14 @@ class Params:
         """
     @anti_alias_frequency.setter
     def anti_alias_frequency(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def backlash(self) -> float:
+        """
+        backlash: play between piston rod and position sensor [m]; neutral
+        """
+    @backlash.setter
+    def backlash(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def barrel_diameter(self) -> float:
@@ -376,6 +357,22 @@ class Params:
         """
     @chamber_leakage_upper.setter
     def chamber_leakage_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def clock_skew_chamber_pressure(self) -> float:
+        """
+        clock_skew: by how much the pressure logger's clock is late against the others [s]; neutral
+        """
+    @clock_skew_chamber_pressure.setter
+    def clock_skew_chamber_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def clock_skew_extension(self) -> float:
+        """
+        clock_skew: by how much the position logger's clock is late against the others [s]; neutral
+        """
+    @clock_skew_extension.setter
+    def clock_skew_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def command_delay(self) -> float:
@@ -672,6 +669,22 @@ class Params:
         """
     @exponential_friction_rate.setter
     def exponential_friction_rate(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def frame_compliance(self) -> float:
+        """
+        frame_compliance: by how much the mount yields per newton, seen by a position sensor that stands on the ground [m/N]; neutral
+        """
+    @frame_compliance.setter
+    def frame_compliance(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def friction_lag(self) -> float:
+        """
+        friction_lag: by how much the lubricant film, and with it friction, is late against the speed [s]; neutral
+        """
+    @friction_lag.setter
+    def friction_lag(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def gas_constant(self) -> float:
@@ -1202,6 +1215,14 @@ class Params:
     def potentiometer_range(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def presliding_share(self) -> float:
+        """
+        presliding: share of the friction that the seals carry by their deformation before they slide [1]; neutral
+        """
+    @presliding_share.setter
+    def presliding_share(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def pressure_friction(self) -> float:
         """
         pressure_dependent_friction: friction per pascal of p_lower + p_upper - 2 p_ambient, from lips pressed on the bore [N/Pa]; neutral
@@ -1314,12 +1335,44 @@ class Params:
     def sensor_gain_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def sensor_gain_supply_pressure(self) -> float:
+        """
+        relative gain error of the supply's pressure sensor [1]; neutral
+        """
+    @sensor_gain_supply_pressure.setter
+    def sensor_gain_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def sensor_gain_tank_pressure(self) -> float:
         """
         relative gain error of the tank's pressure sensor [1]; neutral
         """
     @sensor_gain_tank_pressure.setter
     def sensor_gain_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_lag_chamber_pressure_lower(self) -> float:
+        """
+        sensor_lag: by how much the lower chamber's pressure sensor is late [s]; neutral
+        """
+    @sensor_lag_chamber_pressure_lower.setter
+    def sensor_lag_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_lag_chamber_pressure_upper(self) -> float:
+        """
+        sensor_lag: by how much the upper chamber's pressure sensor is late [s]; neutral
+        """
+    @sensor_lag_chamber_pressure_upper.setter
+    def sensor_lag_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_lag_extension(self) -> float:
+        """
+        sensor_lag: by how much the position sensor's filter is late [s]; neutral
+        """
+    @sensor_lag_extension.setter
+    def sensor_lag_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def sensor_offset_chamber_pressure_lower(self) -> float:
@@ -1352,6 +1405,14 @@ class Params:
         """
     @sensor_offset_rod_force.setter
     def sensor_offset_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_offset_supply_pressure(self) -> float:
+        """
+        zero error of the supply's pressure sensor [Pa]; neutral
+        """
+    @sensor_offset_supply_pressure.setter
+    def sensor_offset_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def sensor_offset_tank_pressure(self) -> float:
@@ -1432,6 +1493,14 @@ class Params:
         """
     @stiction_force.setter
     def stiction_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def stiction_shape(self) -> float:
+        """
+        form of that rise: 0 the sine, 1 a hyperbolic tangent of the same slope, between: a mixture [1]; assumed: eq. 6.7 is a regularisation, its form was not measured
+        """
+    @stiction_shape.setter
+    def stiction_shape(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def stiction_velocity(self) -> float:
@@ -1516,7 +1585,7 @@ class Params:
     @property
     def tank_pressure_floor(self) -> float:
         """
-        pressure_sensor_floor: the tank's pressure sensor reads no less, absolute [Pa]; neutral (about 100 mbar gauge in section 5.3.1)
+        pressure_sensor_floor: the tank's pressure sensor reads no less, absolute [Pa]; assumed: neutral (about 100 mbar gauge in section 5.3.1)
         """
     @tank_pressure_floor.setter
     def tank_pressure_floor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1949,7 +2018,7 @@ class CylinderRecord:
     """
     The compared samples of one record of the rig 'cylinder', as read; arrays (n,), SI.
     """
-    def __init__(self, *, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], rod_force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., gauge_lower: bool = False, gauge_upper: bool = False) -> None:
+    def __init__(self, *, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], rod_force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., gauge_lower: bool = False, gauge_upper: bool = False, time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ...) -> None:
         ...
 class Problem:
     """
@@ -1963,8 +2032,10 @@ class Problem:
     def rows(self) -> int:
         ...
 class CylinderProblem(Problem):
-    def __init__(self, records: collections.abc.Sequence[CylinderRecord]) -> None:
-        ...
+    def __init__(self, records: collections.abc.Sequence[CylinderRecord], law: str = 'acceleration_dependent') -> None:
+        """
+        law: acceleration_dependent, two_branch, stribeck; dahl and lugre need the records' time.
+        """
 class TankProblem(Problem):
     """
     One charge or discharge of a tank: time s, pressure Pa absolute as read, temperature K of a thermocouple and supply Pa absolute where they were measured; arrays (n,). Residuals: pressures, then temperatures.
@@ -1976,6 +2047,52 @@ class TankProblem(Problem):
         """
         s, of the integration
         """
+class BenchRecord:
+    """
+    One evenly sampled record of the rig 'bench'; arrays (n,), SI.
+    """
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
+        ...
+class Window:
+    """
+    A stretch of a record that is simulated from an initial state of its own.
+    """
+    @property
+    def first(self) -> int:
+        ...
+    @property
+    def record(self) -> int:
+        ...
+    @property
+    def row(self) -> int:
+        ...
+    @property
+    def rows(self) -> int:
+        ...
+    @property
+    def samples(self) -> int:
+        ...
+class BenchProblem(Problem):
+    """
+    Prediction errors over windows, in units of the noise.
+    """
+    def __init__(self, *, records: collections.abc.Sequence[BenchRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+        ...
+    def errors(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,): predicted less measured over the noise, at the best initial states.
+        """
+    def hidden(self, params: Params, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, 3 knots): derivatives against a hidden force and hidden flows into either chamber, in each window.
+        """
+    def settle(self, params: Params) -> None:
+        """
+        Let later searches for initial states begin at the best ones of these parameters.
+        """
+    @property
+    def windows(self) -> list[Window]:
+        ...
 class Fit:
     """
     The result of a least-squares fit.
@@ -2307,22 +2424,3 @@ __version__: str = '0.1.0'
 build_info: str = 'libsms 0.1.0 float+double c++201402L no-exceptions no-rtti'
 has_estimation: bool = True
 largest_angle: float = 0.6
-class Window:
-    """
-    A stretch of a record that is simulated from an initial state of its own.
-    """
-    @property
-    def first(self) -> int:
-        ...
-    @property
-    def record(self) -> int:
-        ...
-    @property
-    def row(self) -> int:
-        ...
-    @property
-    def rows(self) -> int:
-        ...
-    @property
-    def samples(self) -> int:
-        ...
