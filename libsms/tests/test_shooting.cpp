@@ -1,8 +1,12 @@
 // A simulation held against records window by window: derivatives, neutral effects, the stiff step, bad input.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <string>
+#include <utility>
 
 #include "estimation/bench_plant.hpp"
 #include "random_cases.hpp"
@@ -38,16 +42,16 @@ Eigen::MatrixXd simulated(const sms::Params<double>& p, int samples, double long
 }
 
 est::ShootingProblem<est::BenchPlant> problem_of(const sms::Params<double>& truth, int samples) {
-  const Eigen::MatrixXd y = simulated(truth, samples, 2.5e-3);
+  const Eigen::MatrixXd y = simulated(truth, samples, 1e-3);
   const est::BenchRecord record{kStep, command(samples), y.col(0), y.col(1), y.col(2), {}, {}};
-  return {est::BenchPlant({record}, {1e-4, 500.0, 500.0, 500.0}, sms::published_laws(), 2.5e-3), {1.0, 0.1, 1}};
+  return {est::BenchPlant({record}, {1e-4, 500.0, 500.0, 500.0}, sms::published_laws(), 1e-3), {1.0, 0.1, 1}};
 }
 
 }  // namespace
 
 TEST_CASE("the stiff step: halving it changes readings by far less than their noise") {
   const sms::Params<double> p;
-  const Eigen::MatrixXd coarse = simulated(p, 200, 2.5e-3), fine = simulated(p, 200, 2e-4);
+  const Eigen::MatrixXd coarse = simulated(p, 200, 1e-3), fine = simulated(p, 200, 2e-4);
   CHECK((coarse.col(0) - fine.col(0)).cwiseAbs().maxCoeff() < 5e-5);
   CHECK((coarse.col(1) - fine.col(1)).cwiseAbs().maxCoeff() < 150.0);
   CHECK((coarse.col(2) - fine.col(2)).cwiseAbs().maxCoeff() < 150.0);
@@ -70,31 +74,43 @@ TEST_CASE("a record of the model itself leaves nothing, and windows cover it") {
   CHECK(sample == 620);
 }
 
-TEST_CASE("derivatives are those of differences, what an initial state undoes taken off both") {
+TEST_CASE("derivatives of a simulation are those of differences, by parameter and by initial state") {
+  using Jet = ceres::Jet<double, 1>;
   const sms::Params<double> p;
-  const auto problem = problem_of(p, 620);
-  const std::vector<int> free = {sms::index_of_mass_flow_gain,       sms::index_of_moving_mass,
-                                 sms::index_of_piston_leakage,       sms::index_of_sensor_gain_extension,
-                                 sms::index_of_clock_skew_extension, sms::index_of_compression_heat_ratio};
-  const double steps[] = {1e-4, 1e-3, 1e-12, 1e-5, 1e-5, 1e-4};
-  Eigen::VectorXd residual, there;
-  est::RowMatrix jacobian;
-  problem.evaluate(p, free, &residual, &jacobian);
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    sms::Params<double> moved = p;
-    sms::param(moved, free[k]) += steps[k];
-    problem.evaluate(moved, {}, &there, nullptr);
-    const Eigen::VectorXd slope = (there - residual) / steps[k];
-    const Eigen::VectorXd exact = jacobian.col(static_cast<Eigen::Index>(k));
-    CAPTURE(sms_param_describe(free[k])->name);
-    CHECK(slope.dot(exact) / (slope.norm() * exact.norm()) > 0.99);
-    CHECK(slope.norm() == doctest::Approx(exact.norm()).epsilon(0.05));
+  const int samples = 120;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(samples);
+  const est::BenchRecord record{kStep, command(samples), zero, zero, zero, {}, {}};
+  const est::BenchPlant plant({record}, {1e-4, 500.0, 500.0, 500.0}, sms::published_laws(), 1e-3);
+  const est::Window window{0, 0, samples, 0, 3 * samples, {}};
+  const double start[est::BenchPlant::kStart] = {0.2, 0.0, 2.6e5, 2.9e5, 4e5, 0.0};
+  const std::pair<int, double> free[] = {
+      {sms::index_of_mass_flow_gain, 1e-6},       {sms::index_of_moving_mass, 1e-6},
+      {sms::index_of_piston_leakage, 1e-14},      {sms::index_of_sensor_gain_extension, 1e-7},
+      {sms::index_of_clock_skew_extension, 1e-7}, {sms::index_of_compression_heat_ratio, 1e-7}};
+  for (const auto& one : free) {
+    CAPTURE(std::string(sms_param_describe(one.first)->name));
+    sms::Params<Jet> seeded = sms::cast<Jet>(p);
+    sms::param(seeded, one.first).v[0] = 1.0;
+    Jet from[est::BenchPlant::kStart], exact[3 * samples];
+    std::transform(std::begin(start), std::end(start), from, [](double value) { return Jet(value); });
+    plant.simulate(seeded, window, from, exact);
+    sms::Params<double> less = p, more = p;
+    sms::param(less, one.first) -= sms_param_describe(one.first)->lower < sms::param(p, one.first) ? one.second : 0.0;
+    sms::param(more, one.first) += one.second;
+    Eigen::VectorXd low(3 * samples), high(3 * samples), slope(3 * samples);
+    plant.simulate(less, window, start, low.data());
+    plant.simulate(more, window, start, high.data());
+    for (int i = 0; i < 3 * samples; ++i) {
+      slope[i] = exact[i].v[0];
+    }
+    const double step = sms::param(more, one.first) - sms::param(less, one.first);
+    CHECK(((high - low) / step - slope).norm() < 1e-3 * slope.norm());
   }
 }
 
 TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others do not") {
   const sms::Params<double> p;
-  const Eigen::MatrixXd plain = simulated(p, 200, 2.5e-3);
+  const Eigen::MatrixXd plain = simulated(p, 200, 1e-3);
   using Effect = std::pair<int, double>;
   for (const Effect& effect : {Effect{sms::index_of_presliding_share, 0.5}, Effect{sms::index_of_friction_lag, 0.01},
                                Effect{sms::index_of_command_delay, 0.01}, Effect{sms::index_of_backlash, 1e-3},
@@ -103,22 +119,22 @@ TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others d
     CAPTURE(sms_param_describe(effect.first)->name);
     sms::Params<double> changed = p;
     sms::param(changed, effect.first) = 0.0;
-    const Eigen::MatrixXd neutral = simulated(changed, 200, 2.5e-3);
+    const Eigen::MatrixXd neutral = simulated(changed, 200, 1e-3);
     CHECK(std::equal(neutral.data(), neutral.data() + neutral.size(), plain.data(), same_bits));
     sms::param(changed, effect.first) = effect.second;
-    CHECK((simulated(changed, 200, 2.5e-3) - plain).cwiseAbs().maxCoeff() > 1e-7);
+    CHECK((simulated(changed, 200, 1e-3) - plain).cwiseAbs().maxCoeff() > 1e-7);
   }
 }
 
 TEST_CASE("a clock that is late by whole samples is taken by the index") {
   const sms::Params<double> p;
   const int samples = 620, late = 4;
-  const Eigen::MatrixXd y = simulated(p, samples, 2.5e-3);
+  const Eigen::MatrixXd y = simulated(p, samples, 1e-3);
   Eigen::VectorXd shifted = y.col(0);
   shifted.tail(samples - late) = y.col(0).head(samples - late);
   const est::BenchRecord record{kStep, command(samples), shifted, y.col(1), y.col(2), {}, {}};
   const est::ShootingProblem<est::BenchPlant> problem(
-      est::BenchPlant({record}, {1e-4, 500.0, 500.0, 500.0}, sms::published_laws(), 2.5e-3), {1.0, 0.1, 1});
+      est::BenchPlant({record}, {1e-4, 500.0, 500.0, 500.0}, sms::published_laws(), 1e-3), {1.0, 0.1, 1});
   Eigen::VectorXd with, without;
   sms::Params<double> skewed = p;
   skewed.clock_skew_extension = late * kStep;
@@ -131,7 +147,7 @@ TEST_CASE("a clock that is late by whole samples is taken by the index") {
 TEST_CASE("what cannot be a record is refused") {
   const Eigen::VectorXd good = Eigen::VectorXd::Constant(100, 5.0), bad = Eigen::VectorXd::Constant(99, 5.0);
   const auto make = [](const est::BenchRecord& record) {
-    return est::BenchPlant({record}, unit_noise, sms::published_laws(), 2.5e-3);
+    return est::BenchPlant({record}, unit_noise, sms::published_laws(), 1e-3);
   };
   CHECK_THROWS_AS(make({kStep, good, good, bad, good, {}, {}}), std::invalid_argument);
   CHECK_THROWS_AS(make({0.0, good, good, good, good, {}, {}}), std::invalid_argument);
