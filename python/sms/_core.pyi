@@ -1569,7 +1569,7 @@ class Params:
     @property
     def tank_line_resistance(self) -> float:
         """
-        line_pressure_loss: the sensor reads this more than the tank per mass flow into it [Pa s/kg]; neutral (section 5.4.2: the sensors sit in the lines)
+        line_pressure_loss: the sensor, which sits in the line (section 5.4.2), reads this more than the tank per mass flow into it [Pa s/kg]; neutral
         """
     @tank_line_resistance.setter
     def tank_line_resistance(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1585,7 +1585,7 @@ class Params:
     @property
     def tank_pressure_floor(self) -> float:
         """
-        pressure_sensor_floor: the tank's pressure sensor reads no less, absolute [Pa]; assumed: neutral (about 100 mbar gauge in section 5.3.1)
+        pressure_sensor_floor: the tank's pressure sensor reads no less, absolute (about 100 mbar gauge in section 5.3.1) [Pa]; neutral
         """
     @tank_pressure_floor.setter
     def tank_pressure_floor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1617,7 +1617,7 @@ class Params:
     @property
     def thermocouple_time_constant(self) -> float:
         """
-        thermocouple_lag: the thermocouple follows the air with this time constant [s]; neutral (0.4 to 6 s in the literature, section 5.2.2)
+        thermocouple_lag: the thermocouple follows the air with this time constant (0.4 to 6 s, section 5.2.2) [s]; neutral
         """
     @thermocouple_time_constant.setter
     def thermocouple_time_constant(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:

@@ -315,7 +315,15 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path: Path) -> None:
 def test_ctrl_c_at_the_prompt(tmp_path: Path) -> None:
     scenario(tmp_path, ROLL.replace('"4 s"', '"2000 s"') + DAMPED)
     program = [sys.executable, "-m", "sms.cli", "simulate", "scenario.toml", "--out", "out"]
-    with subprocess.Popen(program, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as running:
+    with subprocess.Popen(
+        program,
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(
+            signal.SIGINT, signal.SIG_DFL
+        ),  # a background job ignores it
+    ) as running:
         time.sleep(6.0)
         while running.poll() is None:
             running.send_signal(signal.SIGINT)

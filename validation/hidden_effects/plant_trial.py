@@ -248,8 +248,8 @@ def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
         from distributed import Client  # noqa: PLC0415 (optional extra)
         from distributed import as_completed as dask_completed  # noqa: PLC0415
 
-        with Client(scheduler) as client:
-            for job in dask_completed(client.map(run_task, missing, pure=False)):
+        with Client(scheduler) as client:  # type: ignore[no-untyped-call]
+            for job in dask_completed(client.map(run_task, missing, pure=False)):  # type: ignore[no-untyped-call]
                 yield job.result()
         return
     with ProcessPoolExecutor(workers) as pool:

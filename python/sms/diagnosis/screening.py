@@ -43,7 +43,7 @@ class Screen:
     def cosine(self) -> Array:
         """(m, m): similarity of footprints, 0..1."""
         unit = self.footprint / np.maximum(np.linalg.norm(self.footprint, axis=0), 1e-300)
-        return np.abs(unit.T @ unit)
+        return np.asarray(np.abs(unit.T @ unit))
 
 
 @dataclass(frozen=True)

@@ -84,8 +84,12 @@ class Told:
 
     @property
     def shown(self) -> bool:
-        """Whether its 95 percent interval leaves zero out and it is known to better than half."""
-        return bool(np.isfinite(self.error)) and abs(self.value) > 2.0 * self.error
+        """Whether its 99 percent interval leaves zero out.
+
+        Not 95: some ten parameters are judged at a time, and every other time one would be shown by
+        chance.
+        """
+        return bool(np.isfinite(self.error)) and abs(self.value) > 2.6 * self.error
 
 
 @dataclass(frozen=True)

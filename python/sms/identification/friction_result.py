@@ -32,7 +32,7 @@ def sentences(result: FrictionResult) -> list[str]:
     unsure = [t for t in best.told if not t.shown]
     if unsure:
         said.append(
-            "Fitted but not shown (zero lies within two standard errors, or a bound was reached): "
+            "Fitted but not shown (zero lies within 2.6 standard errors, or a bound was reached): "
             + "; ".join(told_words(t) for t in unsure)
             + "."
         )
