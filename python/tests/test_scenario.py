@@ -312,6 +312,11 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path: Path) -> None:
     assert np.array_equal(record.extension, whole.extension[: record.time.size])
 
 
+def hear_ctrl_c() -> None:
+    """A background job ignores Ctrl-C, and so would its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_ctrl_c_at_the_prompt(tmp_path: Path) -> None:
     scenario(tmp_path, ROLL.replace('"4 s"', '"2000 s"') + DAMPED)
     program = [sys.executable, "-m", "sms.cli", "simulate", "scenario.toml", "--out", "out"]
@@ -320,9 +325,7 @@ def test_ctrl_c_at_the_prompt(tmp_path: Path) -> None:
         cwd=tmp_path,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(
-            signal.SIGINT, signal.SIG_DFL
-        ),  # a background job ignores it
+        preexec_fn=hear_ctrl_c,  # noqa: PLW1509
     ) as running:
         time.sleep(6.0)
         while running.poll() is None:

@@ -38,10 +38,11 @@ typedef enum sms_chamber_law {
   SMS_CHAMBER_ENERGY = 1      /* temperature a state, heat through the wall */
 } sms_chamber_law;
 
+/* The laws are int: a compiler for controllers may store an enum in one octet, the C++ struct behind this one does not. */
 typedef struct sms_actuator_laws {
-  sms_valve_law valve;
-  sms_friction_law friction;
-  sms_chamber_law chamber;
+  int valve;         /* sms_valve_law */
+  int friction;      /* sms_friction_law */
+  int chamber;       /* sms_chamber_law */
   bool drive_filter; /* the command passes the filter behind the pulse width (section 7.3.3) */
 } sms_actuator_laws;
 
