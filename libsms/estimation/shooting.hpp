@@ -53,12 +53,16 @@ struct WindowOptions {
   double length = 1.0;  // s, about: a record is cut evenly
   double run_up = 0.1;  // s at the beginning of a record, only to run up what follows the command
   int threads = 1;
+  // The search for an initial state ends when a step would gain less than this of chi-square, which is one per row, or
+  // this share of it.
+  double least_gain = 0.1;
+  double least_share = 1e-3;
 };
 
 template <typename Plant>
 class ShootingProblem : public Problem {
  public:
-  ShootingProblem(Plant plant, const WindowOptions& options) : plant_(std::move(plant)), threads_(options.threads) {
+  ShootingProblem(Plant plant, const WindowOptions& options) : plant_(std::move(plant)), options_(options) {
     for (int record = 0; record < plant_.records(); ++record) {
       const int skipped = std::min(plant_.samples(record) / 2, static_cast<int>(options.run_up / plant_.step(record)));
       const int samples = plant_.samples(record) - skipped;
@@ -144,7 +148,7 @@ class ShootingProblem : public Problem {
       }
     };
     std::vector<std::thread> others;
-    for (int i = 1; i < threads_; ++i) {
+    for (int i = 1; i < options_.threads; ++i) {
       others.emplace_back(run);
     }
     run();
@@ -168,8 +172,7 @@ class ShootingProblem : public Problem {
     }
   }
 
-  // Levenberg-Marquardt over the initial state, until a step gains next to nothing: 0.1 of chi-square, which is one per
-  // row, or 0.1 per cent of it.
+  // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
   Shot shoot(const Params<double>& params, const Window& w) const {
     using Normal = Eigen::Matrix<double, kStart, kStart>;
     constexpr int kMostSteps = 12;
@@ -189,7 +192,7 @@ class ShootingProblem : public Problem {
       }
       const Eigen::Matrix<double, kStart, 1> move = normal.ldlt().solve(gradient);
       const double cost = shot.residual.squaredNorm();
-      const double enough = 0.1 + 1e-3 * cost;
+      const double enough = options_.least_gain + options_.least_share * cost;
       if (!(gradient.dot(move) > enough)) {
         break;
       }
@@ -270,7 +273,7 @@ class ShootingProblem : public Problem {
   }
 
   Plant plant_;
-  int threads_;
+  WindowOptions options_;
   int rows_ = 0;
   mutable std::vector<Window> windows_;  // a start is only where a search begins, not what it finds
 };
