@@ -3,6 +3,7 @@
 prepare     the measured records as the core's problem: motion derived, strokes found
 catalogue   the effects that can be named (catalogue.toml)
 statistics  judgements that respect coloured residuals: strokes are the unit, not samples
+kind, kinds     what the method asks of a kind of rig that is simulated, and the kinds there are (kind_bench.py, ...)
 repeatability   what repeats, what drifts, and the noise floor
 search      baseline fit, screening, held-out judgement, classes: one round
 rounds      rounds until nothing more is found, and the verdict

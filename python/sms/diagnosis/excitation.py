@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sms.diagnosis.kind import Run
 from sms.diagnosis.prepare import Comparison
 from sms.diagnosis.result import Array
-from sms.diagnosis.runs import Run, Runs
+from sms.diagnosis.runs import Runs
 
 LEVELS = 1.5
 """Ratio between the largest and the smallest mean pressure of the records."""

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from sms import _core
+from sms.diagnosis.kind import Problem
 from sms.diagnosis.result import Array
 
 ENOUGH = 0.5
@@ -71,7 +72,7 @@ def changed(params: _core.Params, names: list[str], values: Array) -> _core.Para
     return copy
 
 
-def fit_windows(problem: _core.Problem, initial: _core.Params, free: list[Free]) -> WindowFit:
+def fit_windows(problem: Problem, initial: _core.Params, free: list[Free]) -> WindowFit:
     """Minimise |residual|^2 + sum (pull (value - centre))^2 within the bounds, from `initial`."""
     names = [f.name for f in free]
     scale = np.array([f.scale for f in free])

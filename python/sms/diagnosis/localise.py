@@ -19,13 +19,12 @@ from sms.diagnosis.result import Array, Hidden, Shape
 from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import Nuisance
 from sms.diagnosis.statistics import Index, sum_by
+from sms.io.signals import SIGNAL_UNITS
 
 KNOTS = 21
 """Points of time per window, 50 ms apart."""
 PIECES = 7
 """Values of a function of one signal."""
-INPUTS = ("force", "flow of the lower chamber", "flow of the upper chamber")
-UNITS = ("N", "kg/s", "kg/s")
 DRAWS = 199
 RIDGE = 1e-3
 
@@ -75,14 +74,14 @@ def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis
         if np.ptp(at) == 0.0:
             continue
         functions = hats(values, at)
-        for number, (equation, unit) in enumerate(zip(INPUTS, UNITS, strict=True)):
+        for number, (equation, unit) in enumerate(runs.kind.hidden.items()):
             columns = _through_plant(
                 runs, hidden[:, number * KNOTS : (number + 1) * KNOTS], functions
             )
             found.append(Basis(equation, signal, off(columns), at, unit))
         for c, channel in enumerate(runs.channels):
             errors = functions * (runs.channel == c)[:, None] / runs.noise[channel]
-            unit = "m" if channel == "extension" else "Pa"
+            unit = SIGNAL_UNITS[channel]
             found.append(
                 Basis(f"reading of {channel}", signal, off(_free_of_start(runs, errors)), at, unit)
             )

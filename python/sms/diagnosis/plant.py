@@ -15,6 +15,8 @@ import numpy as np
 from sms.diagnosis.catalogue import Effect, catalogue
 from sms.diagnosis.evidence import candidates_of
 from sms.diagnosis.excess import Excess, excess_of
+from sms.diagnosis.kind import Kind, Run
+from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.localise import localise
 from sms.diagnosis.plan import plan_next
 from sms.diagnosis.plant_words import conclusion, sentence
@@ -31,7 +33,7 @@ from sms.diagnosis.result import (
     Verdict,
 )
 from sms.diagnosis.rounds import Outcome, Progress, find_causes
-from sms.diagnosis.runs import OUTPUTS, Run, Runs, make_run, noise_of
+from sms.diagnosis.runs import Runs, make_run, noise_of
 from sms.diagnosis.screening import Nuisance, columns_of, project
 from sms.diagnosis.search import (
     Data,
@@ -98,10 +100,10 @@ def diagnose_plant(
     progress: Progress,
 ) -> Diagnosis:
     """From checked records to an answer. InputError for a kind of rig that cannot be simulated against records yet."""
-    if rig.kind not in OUTPUTS:
+    if rig.kind not in KINDS:
         raise InputError(
             f"{rig.path}: records of a {rig.kind} can be read and checked, but not diagnosed yet; "
-            f"what can be: cylinder, {', '.join(OUTPUTS)}"
+            f"what can be: cylinder, {', '.join(KINDS)}"
         )
     if rig.control.controller == "simulated":
         raise InputError(
@@ -354,20 +356,12 @@ def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Ser
                     base_curve,
                     extended_curve,
                     used,
-                    _inputs(run),
+                    _inputs(part.kind, run),
                 )
             )
     return out
 
 
-def _inputs(run: Run) -> dict[str, Array]:
-    found = {
-        f"{n} [{SIGNAL_UNITS[n]}]": run.signals[n]
-        for n in ("extension", "valve_command")
-        if n in run.signals
-    }
-    return found | {
-        "velocity [m/s]": run.velocity,
-        "direction": np.sign(run.velocity),
-        "time [s]": run.time - run.time[0],
-    }
+def _inputs(kind: Kind, run: Run) -> dict[str, Array]:
+    found = {f"{n} [{SIGNAL_UNITS[n]}]": run.signals[n] for n in kind.shown if n in run.signals}
+    return found | kind.derived(run) | {"time [s]": run.time - run.time[0]}

@@ -7,16 +7,15 @@ judgements resample.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import savgol_filter
 
-from sms import _core
+from sms.diagnosis.kind import Kind, Run, WindowProblem
+from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.result import Array
 from sms.io.records import Record
 from sms.io.rig import Rig
@@ -24,39 +23,8 @@ from sms.io.signals import SIGNAL_UNITS
 
 Index = NDArray[np.int64]
 
-WINDOW = 1.0
-"""s: length of a window."""
-LONGEST_STEP = 1e-3
-"""s: of the integration. At 2.5 ms a piston that stops chatters over the kink of its friction; at 1.25 ms hardly."""
 SHORT = 0.025
 """s: what differs over this time is noise; what lasts longer a model could explain."""
-OUTPUTS = {
-    "bench": ("extension", "chamber_pressure_lower", "chamber_pressure_upper", "supply_pressure"),
-}
-"""The signals that are predicted, in the order of the core's rows."""
-
-
-@dataclass(frozen=True, eq=False)
-class Run:
-    """One record, evenly sampled. Arrays (n,), SI."""
-
-    name: str
-    role: str
-    time: Array
-    signals: dict[str, Array]
-    gauge: frozenset[str]
-    conditions: dict[str, float]
-    """Parameter -> by how much it is larger in this run."""
-
-    @property
-    def step(self) -> float:
-        return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Of the extension, by local parabolas over 50 ms, m/s."""
-        width = max(5, 2 * round(0.025 / self.step) + 1)
-        return np.asarray(savgol_filter(self.signals["extension"], width, 2, 1, self.step))
 
 
 def make_run(rig: Rig, record: Record) -> Run:
@@ -79,7 +47,7 @@ def make_run(rig: Rig, record: Record) -> Run:
 def noise_of(rig: Rig, runs: Sequence[Run]) -> dict[str, float]:
     """Standard deviation of one sample of each output, SI: as declared, else from how neighbours differ."""
     noise = {}
-    for signal in OUTPUTS[rig.kind]:
+    for signal in KINDS[rig.kind].outputs:
         source = rig.signals.get(signal)
         declared = None if source is None else source.noise
         steps = [_sample_noise(r.signals[signal]) for r in runs if signal in r.signals]
@@ -105,37 +73,18 @@ class Runs:
     whitened = True
     """Residuals are in units of the declared noise."""
 
+    @property
+    def kind(self) -> Kind:
+        return KINDS[self.rig.kind]
+
     @cached_property
     def channels(self) -> tuple[str, ...]:
         """The outputs that every record has."""
-        return tuple(s for s in OUTPUTS[self.rig.kind] if all(s in m.signals for m in self.motions))
+        return tuple(s for s in self.kind.outputs if all(s in m.signals for m in self.motions))
 
     @cached_property
-    def problem(self) -> _core.BenchProblem:
-        model = self.rig.model
-        return _core.BenchProblem(
-            records=[self._bench_record(m) for m in self.motions],
-            noise={s: self.noise[s] for s in OUTPUTS["bench"]},
-            friction=model.friction,
-            valve=model.valve,
-            chambers=model.chambers,
-            window=WINDOW,
-            longest_step=LONGEST_STEP,
-            threads=int(os.environ.get("SMS_THREADS", "2")),
-        )
-
-    def _bench_record(self, run: Run) -> _core.BenchRecord:
-        s = run.signals
-        supply = s["supply_pressure"] if "supply_pressure" in self.channels else np.empty(0)
-        return _core.BenchRecord(
-            step=run.step,
-            command=s["valve_command"],
-            extension=s["extension"],
-            pressure_lower=s["chamber_pressure_lower"],
-            pressure_upper=s["chamber_pressure_upper"],
-            supply_pressure=supply,
-            conditions=run.conditions,
-        )
+    def problem(self) -> WindowProblem:
+        return self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
 
     @cached_property
     def record(self) -> Index:
@@ -181,8 +130,9 @@ class Runs:
             for n in names
             if n != "setpoint"
         }
-        found["velocity [m/s]"] = self.covariate([m.velocity for m in self.motions])
-        found["direction"] = np.sign(found["velocity [m/s]"])
+        derived = [self.kind.derived(m) for m in self.motions]
+        for name in derived[0]:
+            found[name] = self.covariate([d[name] for d in derived])
         found["time [s]"] = self.covariate([m.time - m.time[0] for m in self.motions])
         return found
 

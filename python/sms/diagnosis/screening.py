@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sms import _core
 from sms.diagnosis.catalogue import Effect
 from sms.diagnosis.gauss_newton import changed
+from sms.diagnosis.kind import Problem
 from sms.diagnosis.result import Array
 from sms.diagnosis.statistics import Index, sum_by
 from sms.parameters import PARAMETERS
@@ -78,7 +79,7 @@ class Nuisance:
 
 
 def columns_of(
-    problem: _core.Problem, params: _core.Params, residual: Array, effects: Sequence[Effect]
+    problem: Problem, params: _core.Params, residual: Array, effects: Sequence[Effect]
 ) -> Array:
     """(rows, m): change of the residual with the first parameter of each effect; by a step where it has no slope."""
     smooth = [e.parameters[0] for e in effects if e.step is None]

@@ -1,0 +1,125 @@
+"""What the method asks of a kind of rig that is simulated against its records; kinds.py lists the kinds.
+
+The method itself knows no plant. It holds a problem (a simulation that leaves errors, window by window, in units of
+the noise), turns its parameters, and reads what a kind says about its signals. A plant of one's own needs no more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import savgol_filter
+
+from sms import _core
+from sms.diagnosis.result import Array
+from sms.io.rig import Rig
+
+
+class Problem(Protocol):
+    """A model held against measured records."""
+
+    @property
+    def rows(self) -> int:
+        """Number of residuals."""
+        ...
+
+    def evaluate(
+        self, params: _core.Params, free: Sequence[str] = ...
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Residual (rows,), predicted less measured over the noise, and Jacobian (rows, free)."""
+        ...
+
+
+class Window(Protocol):
+    """A stretch of a record that is simulated from an initial state of its own."""
+
+    @property
+    def record(self) -> int: ...
+    @property
+    def first(self) -> int:
+        """Its first sample in the record."""
+        ...
+
+    @property
+    def samples(self) -> int: ...
+    @property
+    def row(self) -> int:
+        """Where its residuals begin: for each sample, each output."""
+        ...
+
+    @property
+    def rows(self) -> int: ...
+
+
+class WindowProblem(Problem, Protocol):
+    """A simulation held against records window by window, each from the initial state that fits it best."""
+
+    @property
+    def windows(self) -> Sequence[Window]: ...
+
+    def errors(self, params: _core.Params) -> NDArray[np.float64]:
+        """(rows,): predicted less measured over the noise, at the best initial states."""
+        ...
+
+    def hidden(self, params: _core.Params, knots: int) -> NDArray[np.float64]:
+        """(rows, hidden inputs x knots): derivatives against hidden inputs, linear between knots in each window."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One record, evenly sampled. Arrays (n,), SI."""
+
+    name: str
+    role: str
+    time: Array
+    signals: dict[str, Array]
+    gauge: frozenset[str]
+    conditions: dict[str, float]
+    """Parameter -> by how much it is larger in this run."""
+
+    @property
+    def step(self) -> float:
+        return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
+
+    def rate(self, signal: str) -> Array:
+        """Of a signal, by local parabolas over 50 ms, in its unit per second."""
+        width = max(5, 2 * round(0.025 / self.step) + 1)
+        return np.asarray(savgol_filter(self.signals[signal], width, 2, 1, self.step))
+
+    @property
+    def velocity(self) -> Array:
+        """Of the extension, m/s."""
+        return self.rate("extension")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One run of a kind's menu of safe experiments."""
+
+    title: str
+    how: str
+    simulated: Callable[[Rig, _core.Params, Sequence[str]], Run | None]
+    """The record that it would give with these parameters and measured signals; None where it would not be safe."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of rig."""
+
+    outputs: tuple[str, ...]
+    """The signals that are predicted, in the order of the problem's rows."""
+    hidden: Mapping[str, str]
+    """Hidden inputs of the equations -> unit, in the order of the problem's columns."""
+    make_problem: Callable[[Rig, Sequence[Run], Sequence[str], Mapping[str, float]], WindowProblem]
+    """From a rig, its records, the outputs that all of them have, and the noise of a sample of each."""
+    derived: Callable[[Run], dict[str, Array]]
+    """"velocity [m/s]" -> (n,): what an error may follow beside the signals themselves, time aside."""
+    shown: tuple[str, ...]
+    """The signals over which the report draws errors, beside the derived ones."""
+    menu: tuple[Experiment, ...]
+    """Experiments of which the next is chosen."""

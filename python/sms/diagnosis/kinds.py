@@ -1,0 +1,15 @@
+"""The kinds of rig that are simulated against their records, one entry a kind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from sms.diagnosis.kind import Kind
+from sms.diagnosis.kind_bench import BENCH
+
+KINDS: Mapping[str, Kind] = MappingProxyType(
+    {
+        "bench": BENCH,
+    }
+)
