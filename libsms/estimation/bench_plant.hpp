@@ -102,21 +102,27 @@ S command_at(const Eigen::VectorXd& command, const S& at) {
   return S(command[k]) + (at - S(static_cast<double>(k))) * S(command[k + 1] - command[k]);
 }
 
-// Friction that deviates from its law: presliding and friction_lag, by the difference of force they make.
+// A quantity that follows `now` with a lag of first order, a time h later; in between `now` runs straight to `then`.
 template <typename S>
-void add_seal_effects(const Bench<S>& bench, const BenchState<S>& state, const BenchTerms<S>& t, BenchState<S>& rate) {
+S lagging(const S& late, const S& now, const S& then, const S& lag, const S& h) {
+  using std::exp;
+  const S behind = lag * (then - now) / h;
+  return lag > S(0) ? S(then - behind + (late - now + behind) * exp(-h / lag)) : S(then - behind);
+}
+
+// Friction that deviates from its law, by the difference of force it makes. Presliding: the seals carry a share by
+// their deformation. friction_lag: viscous friction follows the speed of the lubricant's film, which is late.
+template <typename S>
+void add_seal_effects(const Bench<S>& bench, const BenchState<S>& state, const BenchTerms<S>& t, const S& film,
+                      BenchState<S>& rate) {
   const Params<S>& p = bench.params;
-  Piston<S> piston = t.actuator.piston;
   if (!is_absent(p.presliding_share)) {
-    const BristleFriction<S> bristle = lugre_friction(p, piston, state.actuator.deflection);
+    const BristleFriction<S> bristle = lugre_friction(p, t.actuator.piston, state.actuator.deflection);
     rate.velocity -= p.presliding_share * (bristle.force - t.balance.friction) / p.moving_mass;
     rate.actuator.deflection = bristle.deflection_rate;
   }
   if (!is_absent(p.friction_lag)) {
-    piston.acceleration = t.balance.acceleration;
-    Piston<S> earlier = piston;
-    earlier.velocity = piston.velocity - p.friction_lag * piston.acceleration;
-    rate.velocity -= (friction(p, earlier) - friction(p, piston)) / p.moving_mass;
+    rate.velocity += p.viscous_friction * (state.velocity - film) / p.moving_mass;
   }
 }
 
@@ -276,30 +282,37 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
     rate.actuator.lower.pressure += value(1) * p.gas_constant * p.air_temperature / t.actuator.lower.volume;
     rate.actuator.upper.pressure += value(2) * p.gas_constant * p.air_temperature / t.actuator.upper.volume;
   };
-  const auto rates = [&](double at, const BenchState<S>& y, BenchState<S>& rate) {
+  const auto rates = [&](double at, const BenchState<S>& y, const S& film, BenchState<S>& rate) {
     const BenchInput<S> input{detail::command_at<S>(record.command, S(window.first + at) - late), S(0)};
     derivative(bench, y, input, t, rate);
-    detail::add_seal_effects(bench, y, t, rate);
+    detail::add_seal_effects(bench, y, t, film, rate);
     push(at, rate);
+  };
+  const bool film_is_late = !is_absent(p.friction_lag);
+  S film = state.velocity;
+  const auto film_at = [&](const S& speed) {
+    return film_is_late ? detail::lagging(film, state.velocity, speed, p.friction_lag, h) : speed;
   };
   const S g = S(0.29289321881345254) * h;
   const auto x = vector_of(state);
   for (int k = 0;; ++k) {
-    rates(k, state, k1);
+    rates(k, state, film, k1);
     residual = readings<S>(p, record, window.first + k, state, k1, t.actuator.force - t.balance.friction, residual);
     if (k == window.samples - 1) {
       return;
     }
     for (int i = 0; i < steps; ++i) {
       if (i > 0) {
-        rates(k + double(i) / steps, state, k1);
+        rates(k + double(i) / steps, state, film, k1);
       }
       const detail::BenchStiffness<S> stiff = detail::bench_stiffness(bench, state, t);
       detail::solve_stiff(stiff, g, k1);
       vector_of(moved) = x + h * vector_of(k1);
-      rates(k + double(i + 1) / steps, moved, k2);
+      rates(k + double(i + 1) / steps, moved, film_at(moved.velocity), k2);
       vector_of(k2) -= S(2) * vector_of(k1);
       detail::solve_stiff(stiff, g, k2);
+      const S speed = state.velocity + (S(0.5) * h) * (S(3) * k1.velocity + k2.velocity);
+      film = film_at(speed);
       vector_of(state) += (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
     }
   }

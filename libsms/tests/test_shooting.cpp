@@ -90,7 +90,8 @@ TEST_CASE("derivatives of a simulation are those of differences, by parameter an
   const std::pair<int, double> free[] = {
       {sms::index_of_mass_flow_gain, 1e-6},       {sms::index_of_moving_mass, 1e-6},
       {sms::index_of_piston_leakage, 1e-14},      {sms::index_of_sensor_gain_extension, 1e-7},
-      {sms::index_of_clock_skew_extension, 1e-7}, {sms::index_of_compression_heat_ratio, 1e-7}};
+      {sms::index_of_clock_skew_extension, 1e-7}, {sms::index_of_compression_heat_ratio, 1e-7},
+      {sms::index_of_friction_lag, 1e-7}};
   for (const auto& one : free) {
     CAPTURE(std::string(sms_param_describe(one.first)->name));
     sms::Params<Jet> seeded = sms::cast<Jet>(p);
@@ -153,6 +154,18 @@ TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others d
     sms::param(changed, effect.first) = effect.second;
     CHECK((simulated(changed, 200, 1e-3) - plain).cwiseAbs().maxCoeff() > 1e-7);
   }
+}
+
+TEST_CASE("the lubricant's film follows the speed by a lag of first order, and is the speed where there is none") {
+  using sms::estimation::detail::lagging;
+  double film = 0.3;
+  const double lag = 0.02, h = 1e-3;
+  for (int k = 0; k < 50; ++k) {  // a speed that rises by 2 m/s in a second, from 0.1 m/s
+    film = lagging(film, 0.1 + 2.0 * k * h, 0.1 + 2.0 * (k + 1) * h, lag, h);
+  }
+  const double exact = 0.1 + 2.0 * (0.05 - lag) + (0.3 - 0.1 + 2.0 * lag) * std::exp(-0.05 / lag);
+  CHECK(film == doctest::Approx(exact).epsilon(1e-12));
+  CHECK(lagging(0.3, 0.1, 0.2, 1e-9, h) == doctest::Approx(0.2).epsilon(1e-6));
 }
 
 TEST_CASE("a clock that is late by whole samples is taken by the index") {
