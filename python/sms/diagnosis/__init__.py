@@ -5,7 +5,8 @@ catalogue   the effects that can be named (catalogue.toml)
 statistics  judgements that respect coloured residuals: strokes are the unit, not samples
 kind, kinds     what the method asks of a kind of rig that is simulated, and the kinds there are (kind_bench.py, ...)
 repeatability   what repeats, what drifts, and the noise floor
-search      baseline fit, screening, held-out judgement, classes: one round
+hypothesis  which parameters may move, and their fit; visible: which effects can be seen at all
+search, judgement   one round: screening and fits, then held-out judgement and classes
 rounds      rounds until nothing more is found, and the verdict
 evidence    sizes with honest errors, gains, what is left
 method      the whole method, from a rig file to a Diagnosis (result.py)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms import _core
+from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
 from sms.diagnosis.prepare import Comparison, Motion, inputs_of, predict
 from sms.diagnosis.repeatability import Repeatability, arrangement
 from sms.diagnosis.result import (
@@ -21,7 +22,7 @@ from sms.diagnosis.result import (
 )
 from sms.diagnosis.ripple import find_ripple
 from sms.diagnosis.rounds import Outcome, Round
-from sms.diagnosis.search import Data, Fitted, Trial, fit, residual_of
+from sms.diagnosis.search import Trial
 from sms.diagnosis.statistics import interval, resampled, weighted_ms
 from sms.parameters import PARAMETERS
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
-from sms.diagnosis.search import Data, Fitted, refitted
 
 
 @dataclass(frozen=True)

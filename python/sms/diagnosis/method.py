@@ -20,6 +20,7 @@ from sms.diagnosis.evidence import (
     series_of,
     value_of,
 )
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
 from sms.diagnosis.plant import diagnose_plant
 from sms.diagnosis.prepare import Comparison, Motion, prepare, with_role
 from sms.diagnosis.related import related_rigs
@@ -27,15 +28,8 @@ from sms.diagnosis.repeatability import Ground, Repeatability
 from sms.diagnosis.result import Diagnosis, Finding, NotTestable, Related, Verdict
 from sms.diagnosis.rounds import Outcome, Progress, decide, find_causes, repeats_of
 from sms.diagnosis.runs import Runs
-from sms.diagnosis.search import (
-    Data,
-    Fitted,
-    baseline_hypothesis,
-    fit,
-    residual_of,
-    testable,
-)
 from sms.diagnosis.statistics import strokes_per_block
+from sms.diagnosis.visible import testable
 from sms.io import check as data_check
 from sms.io.errors import InputError
 from sms.io.records import Record, load_record

@@ -14,11 +14,11 @@ from itertools import permutations
 import numpy as np
 
 from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.kind import Experiment
 from sms.diagnosis.result import Array, Hidden, NextExperiment, Verdict
 from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import Nuisance, columns_of, project
-from sms.diagnosis.search import Data, Fitted
 
 
 def plan_next(

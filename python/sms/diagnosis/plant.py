@@ -15,6 +15,7 @@ import numpy as np
 from sms.diagnosis.catalogue import Effect, catalogue
 from sms.diagnosis.evidence import candidates_of
 from sms.diagnosis.excess import Excess, excess_of
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, nuisance_of, refitted
 from sms.diagnosis.kind import Kind, Run
 from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.localise import localise
@@ -35,17 +36,9 @@ from sms.diagnosis.result import (
 from sms.diagnosis.rounds import Outcome, Progress, find_causes
 from sms.diagnosis.runs import Runs, make_run, noise_of
 from sms.diagnosis.screening import Nuisance, columns_of, project
-from sms.diagnosis.search import (
-    Data,
-    Fitted,
-    Trial,
-    baseline_hypothesis,
-    fit,
-    nuisance_of,
-    refitted,
-    testable,
-)
+from sms.diagnosis.search import Trial
 from sms.diagnosis.statistics import interval, resampled, weighted_ms
+from sms.diagnosis.visible import testable
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
 from sms.diagnosis.prepare import Comparison, prepare
 from sms.diagnosis.result import ParameterValue, Related
-from sms.diagnosis.search import Data, Fitted, baseline_hypothesis, fit
 from sms.io.records import load_record
 from sms.io.rig import Rig, load_rig
 from sms.parameters import PARAMETERS

@@ -8,20 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted, residual_of, unseen
+from sms.diagnosis.judgement import Yardstick, best_class, judge
 from sms.diagnosis.prepare import Comparison
 from sms.diagnosis.repeatability import Repeatability, repeatability
 from sms.diagnosis.result import Verdict
-from sms.diagnosis.search import (
-    Data,
-    Fitted,
-    Trial,
-    Yardstick,
-    best_class,
-    judge,
-    residual_of,
-    try_effects,
-    unseen,
-)
+from sms.diagnosis.search import Trial, try_effects
 
 MOST_CAUSES = 4
 """More are not named: with so many terms something always fits."""

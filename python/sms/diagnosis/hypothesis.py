@@ -1,0 +1,213 @@
+"""A model at one moment: which parameters may move and how far, and its fit to records.
+
+The baseline frees what the rig file declares as unknown, and what it declares with an uncertainty within that. Each
+cause that was found adds its parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sms import _core
+from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.gauss_newton import Free, Solution, changed, fit_windows
+from sms.diagnosis.prepare import Comparison
+from sms.diagnosis.result import Array
+from sms.diagnosis.runs import Runs
+from sms.diagnosis.screening import Nuisance
+from sms.diagnosis.statistics import covariance_of, project_off
+from sms.io.rig import Rig
+from sms.parameters import PARAMETERS
+
+ALWAYS_UNCERTAIN = ("stiction_shape",)
+"""Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Which parameters may move, and how far: name -> (lower, upper). `start` has every other one.
+
+    A parameter in `known` (name -> declared uncertainty) is pulled to its declared value as by one sample.
+    """
+
+    start: _core.Params
+    free: dict[str, tuple[float, float]]
+    known: dict[str, float]
+    causes: tuple[Effect, ...] = ()
+
+    def with_effect(self, effect: Effect) -> Hypothesis:
+        """The effect's parameters freed within the bounds of params.def."""
+        wide = {
+            name: (PARAMETERS[name].lower, PARAMETERS[name].upper) for name in effect.parameters
+        }
+        known = {name: u for name, u in self.known.items() if name not in wide}
+        return replace(self, free=self.free | wide, known=known, causes=(*self.causes, effect))
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A hypothesis fitted to the identify records."""
+
+    hypothesis: Hypothesis
+    fit: Solution
+    covariance: Array
+    """(free, free), robust to correlation within blocks; zero rows for a parameter at its bound."""
+
+    @property
+    def params(self) -> _core.Params:
+        return self.fit.params
+
+    def standard_error(self, name: str) -> float:
+        k = list(self.hypothesis.free).index(name)
+        return float(np.sqrt(max(self.covariance[k, k], 0.0)))
+
+    @property
+    def movable(self) -> list[str]:
+        """Free parameters that are not held by a bound."""
+        return [
+            n for n, held in zip(self.hypothesis.free, self.fit.at_bound, strict=True) if not held
+        ]
+
+
+@dataclass(frozen=True)
+class Data:
+    """The records of a rig, by role."""
+
+    rig: Rig
+    identify: Comparison | Runs
+    validate: Comparison | Runs
+    unseen_of: dict[int, tuple[Fitted, Fitted]] = field(default_factory=dict, repr=False)
+    """What `unseen` has worked out already."""
+
+
+# ---- fits ----------------------------------------------------------------------------------------
+
+
+def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
+    """Parameters as declared; free are those to be fitted, and those that have a declared uncertainty.
+
+    A free parameter that leaves no trace in the identify records stays where it is.
+    """
+    rig = data.rig
+    start = _core.Params(**{name: declared.value for name, declared in rig.parameters.items()})
+    names = [n for n, d in rig.parameters.items() if d.fit]
+    known = [n for e in effects for n in e.parameters if n not in names]
+    if (
+        data.identify.whitened
+    ):  # a simulation feels every parameter, not only those that are effects
+        known += [n for n, d in rig.parameters.items() if d.uncertainty > 0.0 and not d.fit]
+        known += [n for n in ALWAYS_UNCERTAIN if n not in rig.parameters]
+    free: dict[str, tuple[float, float]] = {}
+    uncertain: dict[str, float] = {}
+    for name in dict.fromkeys(names + known):
+        declared, bounds = rig.declared(name), PARAMETERS[name]
+        if declared.fit:
+            free[name] = (bounds.lower, bounds.upper)
+        elif declared.uncertainty > 0.0:
+            uncertain[name] = declared.uncertainty
+            free[name] = (
+                max(bounds.lower, declared.value - declared.uncertainty),
+                min(bounds.upper, declared.value + declared.uncertainty),
+            )
+    _, jacobian = data.identify.problem.evaluate(start, list(free))
+    seen = np.linalg.norm(jacobian, axis=0) > 0.0
+    return Hypothesis(
+        start, {n: b for n, b, s in zip(free, free.values(), seen, strict=True) if s}, uncertain
+    )
+
+
+def fit(
+    hypothesis: Hypothesis, comparison: Comparison | Runs, initial: _core.Params | None = None
+) -> Fitted:
+    """Least squares over the hypothesis' free parameters, with block-robust covariance."""
+    if isinstance(comparison, Runs):
+        return _fit_runs(hypothesis, comparison, initial or hypothesis.start)
+    before, _ = comparison.problem.evaluate(hypothesis.start)
+    sample = float(np.sqrt(np.mean(before**2)))
+    free = [
+        (name, *bounds, sample / hypothesis.known[name] if name in hypothesis.known else 0.0)
+        for name, bounds in hypothesis.free.items()
+    ]
+    result = _core.fit(comparison.problem, hypothesis.start, free)
+    covariance = np.zeros((len(free), len(free)))
+    moved = np.flatnonzero(~np.array(result.at_bound, dtype=bool))
+    if len(moved):
+        covariance[np.ix_(moved, moved)] = covariance_of(
+            result.jacobian[:, moved], result.residual, comparison.block
+        )
+    return Fitted(hypothesis, result, covariance)
+
+
+def _fit_runs(hypothesis: Hypothesis, runs: Runs, initial: _core.Params) -> Fitted:
+    start = hypothesis.start
+    free = [
+        Free(n, low, high, 1.0 / hypothesis.known[n] if n in hypothesis.known else 0.0, start[n])
+        for n, (low, high) in hypothesis.free.items()
+    ]
+    found = fit_windows(runs.problem, initial, free)
+    pull = np.array([f.pull for f in free])
+    bread = np.linalg.pinv(found.jacobian.T @ found.jacobian + np.diag(pull**2), hermitian=True)
+    noise = max(float(np.mean(found.residual**2)), 1e-12)
+    robust = covariance_of(found.jacobian, found.residual, runs.block) if free else bread
+    # With more parameters than windows the robust one has too low a rank: the larger of the two variances holds.
+    inflate = np.sqrt(np.maximum(np.diag(robust) / np.maximum(np.diag(noise * bread), 1e-300), 1.0))
+    inflate = np.minimum(inflate, 10.0)
+    covariance = noise * bread * np.outer(inflate, inflate)
+    for k, held in enumerate(found.at_bound):
+        if held:
+            covariance[k, :] = covariance[:, k] = 0.0
+    return Fitted(hypothesis, found, covariance)
+
+
+def residual_of(comparison: Comparison | Runs, params: _core.Params) -> Array:
+    residual, _ = comparison.problem.evaluate(params)
+    return np.asarray(residual)
+
+
+def unseen(fitted: Fitted, data: Data) -> Array:
+    """(rows,) residuals on the validate records.
+
+    Where a simulation is held against them, the known parameters may move within their declared uncertainty on these
+    records too (another day, another temperature); what was found on the identify records stays.
+    """
+    return (
+        refitted(fitted, data).fit.residual
+        if data.validate.whitened
+        else residual_of(data.validate, fitted.params)
+    )
+
+
+def refitted(fitted: Fitted, data: Data) -> Fitted:
+    """The model on the validate records, its causes held."""
+    if id(fitted) not in data.unseen_of:
+        h = fitted.hypothesis
+        held = {n for cause in h.causes for n in cause.parameters}
+        free = {n: bounds for n, bounds in h.free.items() if n not in held}
+        start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
+        known = {n: u for n, u in h.known.items() if n not in held}
+        there = fit(Hypothesis(start, free, known, h.causes), data.validate, fitted.params)
+        data.unseen_of[id(fitted)] = (fitted, there)
+    return data.unseen_of[id(fitted)][1]
+
+
+def footprints(fitted: Fitted, comparison: Comparison | Runs, names: list[str]) -> Array:
+    """(rows, names): how the residual changes with each parameter, beyond what the free ones can undo."""
+    nuisance = [n for n in fitted.movable if n not in names]
+    _, jacobian = comparison.problem.evaluate(fitted.params, nuisance + names)
+    return project_off(jacobian[:, len(nuisance) :], jacobian[:, : len(nuisance)])
+
+
+def nuisance_of(fitted: Fitted) -> Nuisance:
+    """The free parameters that are not held by a bound, at the solution."""
+    h = fitted.hypothesis
+    movable = fitted.movable
+    place = [list(h.free).index(n) for n in movable]
+    return Nuisance(
+        movable,
+        fitted.fit.jacobian[:, place],
+        np.array([1.0 / h.known[n] if n in h.known else 0.0 for n in movable]),
+        np.array([fitted.params[n] - h.start[n] for n in movable]),
+    )

@@ -1,0 +1,130 @@
+"""Judgement on unseen records: which trials are causes, and which of them cannot be told apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sms.diagnosis.hypothesis import Data, Fitted, unseen
+from sms.diagnosis.result import Array
+from sms.diagnosis.search import SIGNIFICANT, Trial
+from sms.diagnosis.statistics import interval, resampled, sum_by, weighted_ms
+from sms.parameters import PARAMETERS
+from sms.units_display import format_quantity
+
+WORTH = 0.01
+"""Least share of the original squared error beyond the noise floor that a cause must take on unseen records."""
+WORTH_OF_NOISE = 0.02
+"""The same, as a share of the noise floor itself: a healthy machine has hardly any error beyond it."""
+ALIKE = 0.95
+"""Cosine of two footprints in the data above which two effects cannot be told apart."""
+
+
+@dataclass(frozen=True)
+class Yardstick:
+    """What a gain on the validate records is measured against. Mean squares."""
+
+    original: float
+    """Of the baseline, before any cause was found."""
+    floor: float
+    """Of what does not repeat from stroke to stroke."""
+
+    @property
+    def least_worth(self) -> float:
+        return max(WORTH * max(self.original - self.floor, 0.0), WORTH_OF_NOISE * self.floor)
+
+
+def judge(
+    trials: Sequence[Trial],
+    current: Fitted,
+    data: Data,
+    yardstick: Yardstick,
+    rng: np.random.Generator,
+) -> None:
+    """Each trial's gain on the validate records and whether it can be a cause; fills gain, accepted, reason."""
+    before = unseen(current, data) ** 2
+    block = data.validate.block
+    counts = resampled(data.validate.record, block, rng)
+    total = float(np.mean(before))
+    resampled_before = weighted_ms(before, block, counts)
+    for trial in trials:
+        after = weighted_ms(trial.squared, block, counts)
+        trial.gain = 1.0 - float(np.mean(trial.squared)) / total
+        trial.gain_interval = interval(1.0 - after / resampled_before)
+        trial.reason = _objection(trial, before, data, yardstick)
+        trial.accepted = not trial.reason
+
+
+def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) -> str:
+    """Why the trial is no cause; empty if there is nothing against it."""
+    if trial.reason:
+        return trial.reason
+    name = trial.effect.parameters[0]
+    value = trial.fitted.params[name]
+    low, high = trial.effect.plausible_range(data.rig.declared(name).value)
+    if trial.p_value > SIGNIFICANT:
+        return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
+    if not low <= value <= high:
+        return f"fits only with {format_quantity(value, PARAMETERS[name].unit, name)}, which is not plausible"
+    if trial.gain_interval[0] <= 0.0:
+        return "does not help on the records it has not seen"
+    worth = float(np.mean(before) - np.mean(trial.squared))
+    if worth < yardstick.least_worth:
+        return "real, but worth next to nothing on the records it has not seen"
+    for number, name_ in enumerate(m.name for m in data.validate.motions):
+        rows = data.validate.record == number
+        if float(np.mean(trial.squared[rows]) - np.mean(before[rows])) > worth:
+            return f"makes '{name_}' worse by more than it gains elsewhere"
+    return ""
+
+
+def best_class(trials: Sequence[Trial], data: Data, rng: np.random.Generator) -> list[Trial]:
+    """The best accepted trial and those that the data cannot tell from it, in the catalogue's order; or none.
+
+    Alike are two effects whose footprints are nearly parallel, or whose unseen records come out equally well
+    although each explains nine tenths of what the other does.
+    """
+    accepted = [t for t in trials if t.accepted]
+    if not accepted:
+        return []
+    if data.validate.whitened:
+        return _best_of_runs(accepted, data)
+    best = max(accepted, key=lambda t: t.gain)
+    counts = resampled(data.validate.record, data.validate.block, rng)
+    members = []
+    for trial in accepted:
+        difference = weighted_ms(trial.squared - best.squared, data.validate.block, counts)
+        as_good = interval(difference)[0] <= 0.0 and trial.gain >= 0.9 * best.gain
+        if best.similarity[trial.effect.key] > ALIKE or as_good:
+            members.append(trial)
+    return members
+
+
+TELLS_APART = 3.0
+"""Standard errors of the difference between two rivals, over windows, from which the worse one is out."""
+
+
+def _best_of_runs(accepted: Sequence[Trial], data: Data) -> list[Trial]:
+    """As best_class, where each rival has one parameter and all windows count: seen ones and unseen ones alike."""
+
+    def by_window(trial: Trial) -> Array:
+        seen = sum_by(data.identify.block, trial.identified, int(data.identify.block.max()) + 1)
+        unseen = sum_by(data.validate.block, trial.squared, int(data.validate.block.max()) + 1)
+        return np.concatenate([seen, unseen])
+
+    left = {t.effect.key: by_window(t) for t in accepted}
+    best = min(accepted, key=lambda t: float(left[t.effect.key].sum()))
+    members = []
+    for trial in accepted:
+        worse = left[trial.effect.key] - left[best.effect.key]
+        scatter = float(np.std(worse) * np.sqrt(len(worse)))
+        told_apart = float(worse.sum()) > TELLS_APART * scatter or trial.gain < 0.9 * best.gain
+        if (
+            trial is best
+            or (best.similarity[trial.effect.key] > ALIKE and trial.gain > 0.8 * best.gain)
+            or not told_apart
+        ):
+            members.append(trial)
+    return sorted(members, key=lambda t: t is not best)

@@ -1,0 +1,94 @@
+"""Which effects these records can show at all, and why not the others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.excitation import missing_excitation
+from sms.diagnosis.hypothesis import Data, Fitted, footprints, nuisance_of
+from sms.diagnosis.prepare import Comparison
+from sms.diagnosis.result import Array, NotTestable
+from sms.diagnosis.runs import Runs
+from sms.diagnosis.screening import columns_of, project
+from sms.diagnosis.statistics import covariance_of
+from sms.parameters import PARAMETERS
+from sms.units_display import format_quantity
+
+DETECTION = 3.0
+"""Standard errors at which an effect counts as seen."""
+
+
+def testable(
+    fitted: Fitted, data: Data, effects: Sequence[Effect]
+) -> tuple[list[Effect], list[NotTestable]]:
+    """The effects that the identify records can show, and why they cannot show the others."""
+    possible: list[Effect] = []
+    blind: list[NotTestable] = []
+    for effect in effects:
+        reason = _why_not_asked(effect, data)
+        if reason:
+            blind.append(NotTestable(effect.id, effect.signal, reason))
+        else:
+            possible.append(effect)
+    raw = raw_columns(fitted, data.identify, possible)
+    reduced = _reduced_columns(fitted, data.identify, possible, raw)
+    seen: list[Effect] = []
+    for k, effect in enumerate(possible):
+        reason = _why_blind(effect, fitted, data, raw[:, k], reduced[:, k])
+        if reason:
+            blind.append(NotTestable(effect.id, effect.signal, reason))
+        else:
+            seen.append(effect)
+    return seen, blind
+
+
+def raw_columns(fitted: Fitted, comparison: Comparison | Runs, effects: Sequence[Effect]) -> Array:
+    return columns_of(comparison.problem, fitted.params, fitted.fit.residual, effects)
+
+
+def _reduced_columns(
+    fitted: Fitted, comparison: Comparison | Runs, effects: Sequence[Effect], raw: Array
+) -> Array:
+    """(rows, effects): less what the free parameters can undo."""
+    names = [e.parameters[0] for e in effects]
+    if isinstance(comparison, Runs):
+        return project(nuisance_of(fitted), raw, names)[: len(raw)]
+    return np.column_stack([footprints(fitted, comparison, [n])[:, 0] for n in names])
+
+
+def _why_not_asked(effect: Effect, data: Data) -> str:
+    signals = data.identify.motions[0].signals
+    of_sensor = effect.of_sensor or (effect.signal is not None and not data.identify.whitened)
+    if of_sensor and effect.signal not in signals:
+        return f"{effect.signal} is not measured"
+    if all(data.rig.declared(n).fit for n in effect.parameters):
+        return "declared as unknown and fitted anyway: its value is part of the baseline"
+    return ""
+
+
+def _why_blind(effect: Effect, fitted: Fitted, data: Data, raw: Array, column: Array) -> str:
+    if not np.any(raw):
+        return "it leaves no trace in the signals of this rig"
+    reason = missing_excitation(effect.needs, data.identify, data.rig.declared("stroke").value)
+    if reason:
+        return reason
+    if np.linalg.norm(column) < 1e-6 * np.linalg.norm(raw):
+        return (
+            "all it would leave is undone by parameters that are fitted, or that may move this far within "
+            "their declared uncertainty"
+        )
+    name = effect.parameters[0]
+    low, high = effect.plausible_range(data.rig.declared(name).value)
+    covariance = covariance_of(column[:, None], fitted.fit.residual, data.identify.block)
+    error = float(np.sqrt(covariance[0, 0]))
+    if (
+        data.identify.whitened
+    ):  # the residual still holds what the effect itself may have left there
+        error = 1.0 / float(np.linalg.norm(column))
+    if error * DETECTION > max(abs(low), abs(high)):
+        least = format_quantity(DETECTION * error, PARAMETERS[name].unit, name)
+        return f"these records would show it from {least} on only, more than is plausible"
+    return ""
