@@ -50,6 +50,8 @@ _SCALES: Mapping[str, tuple[tuple[float, DisplayUnit], ...]] = MappingProxyType(
         "Pa s/kg": ((0.0, DisplayUnit("bar s/kg", 1e-5)),),
         "kg/(s Pa)": ((0.0, DisplayUnit("g/s per bar", 1e8)),),
         "kg/s": ((0.0, DisplayUnit("g/s", 1e3)),),
+        "m^2": ((0.0, DisplayUnit("mm²", 1e6)),),
+        "m^3/(s V)": ((0.0, DisplayUnit("ml/s per V", 1e6)),),
         "m^3/(s Pa)": ((0.0, DisplayUnit("l/s per bar", 1e8)),),
         "1": ((0.0, DisplayUnit("", 1.0)),),
     }
@@ -180,14 +182,17 @@ def format_change(old: float, new: float, standard_error: float, unit: str, name
         return f"{format_quantity(old, unit, name)} {_ARROW} {format_quantity(new, unit, name)}"
     display = display_unit(unit, max(abs(old), abs(new)), name)
     before, after = display.scale(old), display.scale(new)
-    if _has_error(standard_error):
-        error = display.scale(standard_error)
-        decimals = min(max(_decimals(error, 2), 0), 6)
-        tail = f" {_PLUS_MINUS} {round_number(error, decimals)}"
-    else:
-        step = abs(after - before) or abs(after) or 1.0
-        decimals, tail = min(max(_decimals(step, 2), 0), 6), ""
-    text = f"{round_number(before, decimals)} {_ARROW} {round_number(after, decimals)}{tail}"
+    has_error = _has_error(standard_error)
+    error = display.scale(standard_error) if has_error else abs(after - before) or abs(after) or 1.0
+    decimals = max(_decimals(error, 2), 0)
+
+    def shown(value: float) -> str:
+        return round_number(value, decimals) if decimals <= 6 else significant(value, 4)
+
+    text = f"{shown(before)} {_ARROW} {shown(after)}"
+    if has_error:
+        small = round_number(error, decimals) if decimals <= 6 else significant(error, 2)
+        text += f" {_PLUS_MINUS} {small}"
     return _join(text, display.label)
 
 

@@ -19,8 +19,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from sms.diagnosis.catalogue import catalogue
 from sms.diagnosis.method import read_and_check
-from sms.diagnosis.plant import found_value, investigate
+from sms.diagnosis.plant import found_value, investigate, make_data
 from sms.io.rig import load_rig
 
 from validation.hidden_effects.machines import effects
@@ -145,7 +146,8 @@ def run_task(task: Task) -> Outcome:
         begin = time.process_time()
         rig = load_rig(records / "rig.toml")
         read, _ = read_and_check(rig)
-        case = investigate(rig, read, np.random.default_rng(task.seed), lambda text, done: None)
+        data, rng = make_data(rig, read), np.random.default_rng(task.seed)
+        case = investigate(data, catalogue(rig.kind), rng, lambda text, done: None)
         named = [
             [m.effect.key.replace(" of ", ":") for m in members] for members in case.outcome.classes
         ]

@@ -10,6 +10,7 @@ search, judgement   one round: screening and fits, then held-out judgement and c
 rounds      rounds until nothing more is found, and the verdict
 evidence    sizes with honest errors, gains, what is left
 method      the whole method, from a rig file to a Diagnosis (result.py)
+own         the same for a plant of one's own, written in Python
 report, console   the answer for people
 """
 

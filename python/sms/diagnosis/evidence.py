@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from sms import _core
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
 from sms.diagnosis.prepare import Comparison, Motion, inputs_of, predict
 from sms.diagnosis.repeatability import Repeatability, arrangement
@@ -24,12 +23,14 @@ from sms.diagnosis.ripple import find_ripple
 from sms.diagnosis.rounds import Outcome, Round
 from sms.diagnosis.search import Trial
 from sms.diagnosis.statistics import interval, resampled, weighted_ms
-from sms.parameters import PARAMETERS
 
 
-def value_of(fitted: Fitted, name: str, old: float) -> ParameterValue:
-    error = fitted.standard_error(name) if name in fitted.hypothesis.free else 0.0
-    return ParameterValue(name, fitted.params[name], error, PARAMETERS[name].unit, old)
+def value_of(fitted: Fitted, name: str, old: float, error: float | None = None) -> ParameterValue:
+    """A parameter as fitted, with the error of the fit if no other is given."""
+    if error is None:
+        error = fitted.standard_error(name) if name in fitted.hypothesis.free else 0.0
+    unit = fitted.hypothesis.table[name].unit
+    return ParameterValue(name, fitted.params[name], error, unit, old)
 
 
 def found_value(fitted: Fitted, name: str, old: float, data: Data) -> ParameterValue:
@@ -39,9 +40,7 @@ def found_value(fitted: Fitted, name: str, old: float, data: Data) -> ParameterV
     weight = sum(e.information for e in estimates)
     scatter = sum(e.information * (e.value - value) ** 2 for e in estimates)
     between = np.sqrt(scatter / weight / (len(estimates) - 1))
-    return ParameterValue(
-        name, value, max(fitted.standard_error(name), float(between)), PARAMETERS[name].unit, old
-    )
+    return value_of(fitted, name, old, max(fitted.standard_error(name), float(between)))
 
 
 def instead(
@@ -57,8 +56,23 @@ def instead(
 
 def cause_of(members: Sequence[Trial], outcome: Outcome, baseline: Fitted, data: Data) -> Cause:
     first = members[0]
-    start = _core.Params(**{n: d.value for n, d in data.rig.parameters.items()})
-    final = tuple(found_value(outcome.final, n, start[n], data) for n in first.effect.parameters)
+    start = data.rig.start()
+
+    def found(m: Trial) -> tuple[ParameterValue, ...]:
+        at = outcome.final if m is first else instead(outcome, baseline, members, m, data)
+        return tuple(found_value(at, n, start[n], data) for n in m.effect.parameters)
+
+    each = record_by_record(outcome.final, first.effect.parameters[0], data)
+    return cause_from(members, found, {e.record: e.value for e in each})
+
+
+def cause_from(
+    members: Sequence[Trial],
+    found: Callable[[Trial], tuple[ParameterValue, ...]],
+    consistency: dict[str, float],
+) -> Cause:
+    """One class of trials as a cause, the first standing for it; `found` gives the size of each."""
+    first = members[0]
     return Cause(
         effect=first.effect.id,
         signal=first.effect.signal,
@@ -72,20 +86,14 @@ def cause_of(members: Sequence[Trial], outcome: Outcome, baseline: Fitted, data:
                 m.effect.id,
                 m.effect.signal,
                 m.effect.title,
-                tuple(
-                    found_value(instead(outcome, baseline, members, m, data), n, start[n], data)
-                    for n in m.effect.parameters
-                ),
+                found(m),
                 first.similarity[m.effect.key],
             )
             for m in members[1:]
         ),
-        parameters=final,
+        parameters=found(first),
         p_value=first.p_value,
-        consistency={
-            e.record: e.value
-            for e in record_by_record(outcome.final, first.effect.parameters[0], data)
-        },
+        consistency=consistency,
         separated_by=" ".join(dict.fromkeys(m.effect.separated_by for m in members))
         if len(members) > 1
         else "",

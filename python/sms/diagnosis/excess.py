@@ -14,6 +14,15 @@ from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
 
+LEAST = 0.6
+"""Excess over the noise floor's mean square, over all channels, below which an error is not worth a word.
+
+Two honest descriptions of one machine differ by this much: the form in which friction rises from rest, the flow through
+a valve that is nearly closed. Smaller effects may be real, but are not told from that.
+"""
+LEAST_OF_ONE = 1.2
+"""The same for the channel that is worst off."""
+
 
 @dataclass(frozen=True)
 class Excess:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 from pathlib import Path
-from typing import Any
 
 from sms.diagnosis.report import report_html
-from sms.diagnosis.result import Diagnosis
+from sms.diagnosis.result import Diagnosis, as_json
 from sms.io.errors import InputError
 from sms.io.rig import Declaration
 from sms.io.write import write_extended_rig, write_text_atomically
@@ -30,10 +27,7 @@ def check_output_folder(out: Path) -> None:
 def write_diagnosis(diagnosis: Diagnosis, rig: Path, out: Path) -> tuple[Path, ...]:
     """Write the three files into the folder `out`, made if need be. InputError if that cannot be done."""
     extended, page, data = out / "extended.toml", out / "report.html", out / "diagnosis.json"
-    text = (
-        json.dumps(_plain(diagnosis.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
-        + "\n"
-    )
+    text = as_json(diagnosis)
     html = report_html(diagnosis)
     write_extended_rig(rig, extended, extension_of(diagnosis), header_of(diagnosis))
     write_text_atomically(page, html)
@@ -56,14 +50,3 @@ def header_of(diagnosis: Diagnosis) -> str:
         f"Verdict: {diagnosis.verdict}. {diagnosis.sentence}",
     ]
     return "\n".join(lines)
-
-
-def _plain(value: Any) -> Any:
-    """JSON has no NaN and no infinity: both become null."""
-    if isinstance(value, dict):
-        return {key: _plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -6,7 +6,7 @@ cause that was found adds its parameters.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import Nuisance
 from sms.diagnosis.statistics import covariance_of, project_off
 from sms.io.rig import Rig
-from sms.parameters import PARAMETERS
+from sms.parameters import PARAMETERS, Parameter
 
 ALWAYS_UNCERTAIN = ("stiction_shape",)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
@@ -37,11 +37,13 @@ class Hypothesis:
     free: dict[str, tuple[float, float]]
     known: dict[str, float]
     causes: tuple[Effect, ...] = ()
+    table: Mapping[str, Parameter] = field(default_factory=lambda: PARAMETERS, repr=False)
+    """Bounds and units of every parameter."""
 
     def with_effect(self, effect: Effect) -> Hypothesis:
-        """The effect's parameters freed within the bounds of params.def."""
+        """The effect's parameters freed within their bounds."""
         wide = {
-            name: (PARAMETERS[name].lower, PARAMETERS[name].upper) for name in effect.parameters
+            name: (self.table[name].lower, self.table[name].upper) for name in effect.parameters
         }
         known = {name: u for name, u in self.known.items() if name not in wide}
         return replace(self, free=self.free | wide, known=known, causes=(*self.causes, effect))
@@ -92,18 +94,18 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     A free parameter that leaves no trace in the identify records stays where it is.
     """
     rig = data.rig
-    start = _core.Params(**{name: declared.value for name, declared in rig.parameters.items()})
+    start = rig.start()
     names = [n for n, d in rig.parameters.items() if d.fit]
     known = [n for e in effects for n in e.parameters if n not in names]
     if (
         data.identify.whitened
     ):  # a simulation feels every parameter, not only those that are effects
         known += [n for n, d in rig.parameters.items() if d.uncertainty > 0.0 and not d.fit]
-        known += [n for n in ALWAYS_UNCERTAIN if n not in rig.parameters]
+        known += [n for n in ALWAYS_UNCERTAIN if n in rig.table and n not in rig.parameters]
     free: dict[str, tuple[float, float]] = {}
     uncertain: dict[str, float] = {}
     for name in dict.fromkeys(names + known):
-        declared, bounds = rig.declared(name), PARAMETERS[name]
+        declared, bounds = rig.declared(name), rig.table[name]
         if declared.fit:
             free[name] = (bounds.lower, bounds.upper)
         elif declared.uncertainty > 0.0:
@@ -114,9 +116,8 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
             )
     _, jacobian = data.identify.problem.evaluate(start, list(free))
     seen = np.linalg.norm(jacobian, axis=0) > 0.0
-    return Hypothesis(
-        start, {n: b for n, b, s in zip(free, free.values(), seen, strict=True) if s}, uncertain
-    )
+    movable = {n: b for n, b, s in zip(free, free.values(), seen, strict=True) if s}
+    return Hypothesis(start, movable, uncertain, table=rig.table)
 
 
 def fit(
@@ -188,7 +189,7 @@ def refitted(fitted: Fitted, data: Data) -> Fitted:
         free = {n: bounds for n, bounds in h.free.items() if n not in held}
         start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
         known = {n: u for n, u in h.known.items() if n not in held}
-        there = fit(Hypothesis(start, free, known, h.causes), data.validate, fitted.params)
+        there = fit(replace(h, start=start, free=free, known=known), data.validate, fitted.params)
         data.unseen_of[id(fitted)] = (fitted, there)
     return data.unseen_of[id(fitted)][1]
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sms.diagnosis.excess import LEAST
 from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.diagnosis.result import Array
 from sms.diagnosis.search import SIGNIFICANT, Trial
 from sms.diagnosis.statistics import interval, resampled, sum_by, weighted_ms
-from sms.parameters import PARAMETERS
 from sms.units_display import format_quantity
 
 WORTH = 0.01
@@ -67,7 +67,7 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
     if not low <= value <= high:
-        return f"fits only with {format_quantity(value, PARAMETERS[name].unit, name)}, which is not plausible"
+        return f"fits only with {format_quantity(value, data.rig.table[name].unit, name)}, which is not plausible"
     if trial.gain_interval[0] <= 0.0:
         return "does not help on the records it has not seen"
     worth = float(np.mean(before) - np.mean(trial.squared))
@@ -121,10 +121,9 @@ def _best_of_runs(accepted: Sequence[Trial], data: Data) -> list[Trial]:
         worse = left[trial.effect.key] - left[best.effect.key]
         scatter = float(np.std(worse) * np.sqrt(len(worse)))
         told_apart = float(worse.sum()) > TELLS_APART * scatter or trial.gain < 0.9 * best.gain
-        if (
-            trial is best
-            or (best.similarity[trial.effect.key] > ALIKE and trial.gain > 0.8 * best.gain)
-            or not told_apart
-        ):
+        # What one of two that look alike leaves more may be how the machine differs from any model, unless it is large.
+        alike = best.similarity[trial.effect.key] > ALIKE and trial.gain > 0.8 * best.gain
+        large = float(worse.sum()) > LEAST * float(left[best.effect.key].sum())
+        if trial is best or (alike and not large) or not told_apart:
             members.append(trial)
     return sorted(members, key=lambda t: t is not best)

@@ -7,7 +7,7 @@ the noise), turns its parameters, and reads what a kind says about its signals. 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -17,6 +17,7 @@ from scipy.signal import savgol_filter
 from sms import _core
 from sms.diagnosis.result import Array
 from sms.io.rig import Rig
+from sms.io.signals import SIGNAL_UNITS
 
 
 class Problem(Protocol):
@@ -123,3 +124,7 @@ class Kind:
     """The signals over which the report draws errors, beside the derived ones."""
     menu: tuple[Experiment, ...]
     """Experiments of which the next is chosen."""
+    units: Mapping[str, str] = field(default_factory=lambda: SIGNAL_UNITS)
+    """Of every signal."""
+    short: float = 0.025
+    """s: what differs over this time is noise; what lasts longer a model could explain."""

@@ -19,7 +19,6 @@ from sms.diagnosis.result import Array, Hidden, Shape
 from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import Nuisance
 from sms.diagnosis.statistics import Index, sum_by
-from sms.io.signals import SIGNAL_UNITS
 
 KNOTS = 21
 """Points of time per window, 50 ms apart."""
@@ -81,7 +80,7 @@ def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis
             found.append(Basis(equation, signal, off(columns), at, unit))
         for c, channel in enumerate(runs.channels):
             errors = functions * (runs.channel == c)[:, None] / runs.noise[channel]
-            unit = SIGNAL_UNITS[channel]
+            unit = runs.kind.units[channel]
             found.append(
                 Basis(f"reading of {channel}", signal, off(_free_of_start(runs, errors)), at, unit)
             )

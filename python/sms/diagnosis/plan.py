@@ -9,6 +9,7 @@ proposed.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -65,7 +66,7 @@ def best_of_menu(
         run = experiment.simulated(data.rig, final.params, runs.channels)
         if run is None:
             continue
-        separation = min_separation(rivals, final, Runs(data.rig, (run,), runs.noise))
+        separation = min_separation(rivals, final, replace(runs, motions=(run,)))
         if best is None or separation > best[1]:
             best = experiment, separation
     return best
@@ -82,7 +83,7 @@ def min_separation(rivals: Sequence[Effect], final: Fitted, runs: Runs) -> float
         np.array([1.0 / h.known[n] if n in h.known else 0.0 for n in names]),
         np.zeros(len(names)),
     )
-    columns = columns_of(runs.problem, final.params, residual, rivals)
+    columns = columns_of(runs.problem, final.params, residual, rivals, h.table)
     footprint = project(nuisance, columns, [e.parameters[0] for e in rivals])
     sizes = _sizes(rivals, final, footprint)
     smallest = np.inf

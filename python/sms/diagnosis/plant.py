@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.diagnosis.catalogue import Effect, catalogue
-from sms.diagnosis.evidence import candidates_of
-from sms.diagnosis.excess import Excess, excess_of
+from sms.diagnosis.evidence import candidates_of, cause_from, value_of
+from sms.diagnosis.excess import LEAST, LEAST_OF_ONE, Excess, excess_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, nuisance_of, refitted
 from sms.diagnosis.kind import Kind, Run
 from sms.diagnosis.kinds import KINDS
@@ -27,7 +27,6 @@ from sms.diagnosis.result import (
     Diagnosis,
     Gain,
     Hidden,
-    Member,
     NotTestable,
     ParameterValue,
     Series,
@@ -42,19 +41,9 @@ from sms.diagnosis.visible import testable
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
-from sms.io.signals import SIGNAL_UNITS
-from sms.parameters import PARAMETERS
 
 LEFT = 0.2
 """Of the baseline's excess: with more left, the best explanation is none."""
-LEAST = 0.6
-"""Excess over the noise floor's mean square, over all channels, below which an error is not worth a word.
-
-Two honest descriptions of one machine differ by this much: the form in which friction rises from rest, the flow through
-a valve that is nearly closed. Smaller effects may be real, but are not told from that.
-"""
-LEAST_OF_ONE = 1.2
-"""The same for the channel that is worst off."""
 
 
 @dataclass(frozen=True)
@@ -76,11 +65,16 @@ class Case:
 
 def make_data(rig: Rig, records: Sequence[Record]) -> Data:
     """The records by role, as the core's problems."""
+    kind = KINDS[rig.kind]
     runs = [make_run(rig, record) for record in records]
-    noise = noise_of(rig, runs)
+    return split(rig, kind, runs, noise_of(rig, kind, runs))
+
+
+def split(rig: Rig, kind: Kind, runs: Sequence[Run], noise: dict[str, float]) -> Data:
+    """Runs by role."""
 
     def of(role: str) -> Runs:
-        return Runs(rig, tuple(r for r in runs if r.role == role), noise)
+        return Runs(rig, tuple(r for r in runs if r.role == role), noise, kind)
 
     return Data(rig, of("identify"), of("validate"))
 
@@ -103,17 +97,15 @@ def diagnose_plant(
             f"{rig.path}, [control] controller: the controller cannot be simulated in a diagnosis yet; "
             'write controller = "recorded" and record valve_command'
         )
-    progress("fitting the baseline", 0.05)
-    case = investigate(rig, records, rng, progress)
+    case = investigate(make_data(rig, records), catalogue(rig.kind), rng, progress)
     return complete(blank, case, rng, progress)
 
 
 def investigate(
-    rig: Rig, records: Sequence[Record], rng: np.random.Generator, progress: Progress
+    data: Data, effects: Sequence[Effect], rng: np.random.Generator, progress: Progress
 ) -> Case:
     """Baseline, rounds and verdict: all that a trial needs."""
-    effects = catalogue(rig.kind)
-    data = make_data(rig, records)
+    progress("fitting the baseline", 0.05)
     baseline = fit(baseline_hypothesis(data, effects), data.identify)
     progress("looking which effects can be seen", 0.15)
     able, blind = testable(baseline, data, effects)
@@ -182,7 +174,7 @@ def complete(
         hidden=hidden,
         hidden_left=left,
         noise_floor={},
-        baseline=tuple(_value(baseline, n, start[n]) for n in baseline.hypothesis.free),
+        baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
         next_experiment=plan,
         series=tuple(
             s
@@ -194,13 +186,6 @@ def complete(
 
 
 # ---- causes ------------------------------------------------------------
-
-
-def _value(fitted: Fitted, name: str, old: float, error: float | None = None) -> ParameterValue:
-    found = error if error is not None else 0.0
-    if error is None and name in fitted.hypothesis.free:
-        found = fitted.standard_error(name)
-    return ParameterValue(name, fitted.params[name], found, PARAMETERS[name].unit, old)
 
 
 def found_value(fitted: Fitted, effect: Effect, data: Data) -> ParameterValue:
@@ -216,7 +201,7 @@ def found_value(fitted: Fitted, effect: Effect, data: Data) -> ParameterValue:
         between = float(
             np.sqrt(np.sum(weight * (values - centre) ** 2) / np.sum(weight) / (len(values) - 1))
         )
-    return _value(fitted, name, data.rig.declared(name).value, max(own, between))
+    return value_of(fitted, name, data.rig.declared(name).value, max(own, between))
 
 
 def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, tuple[float, float]]:
@@ -225,7 +210,7 @@ def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, tu
     name = effect.parameters[0]
     for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
         assert isinstance(runs, Runs)
-        column = columns_of(runs.problem, at.params, at.fit.residual, [effect])
+        column = columns_of(runs.problem, at.params, at.fit.residual, [effect], at.hypothesis.table)
         nuisance = nuisance_of(at)
         if name in nuisance.names:
             nuisance = nuisance.without(name)
@@ -244,33 +229,12 @@ def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, tu
 
 def _cause(members: list[Trial], case: Case) -> Cause:
     data, final = case.data, case.outcome.final
-    first = members[0]
-    each = record_by_record(final, first.effect, data)
-    return Cause(
-        effect=first.effect.id,
-        signal=first.effect.signal,
-        kind="missing term" if first.effect.kind == "missing" else "shifted parameter",
-        block=first.effect.block,
-        title=first.effect.title,
-        explanation=first.effect.cause,
-        members=tuple(dict.fromkeys(m.effect.id for m in members)),
-        alternatives=tuple(
-            Member(
-                m.effect.id,
-                m.effect.signal,
-                m.effect.title,
-                (found_value(m.fitted, m.effect, data),),
-                first.similarity[m.effect.key],
-            )
-            for m in members[1:]
-        ),
-        parameters=(found_value(final, first.effect, data),),
-        p_value=first.p_value,
-        consistency={record: value for record, (value, _) in each.items()},
-        separated_by=" ".join(dict.fromkeys(m.effect.separated_by for m in members))
-        if len(members) > 1
-        else "",
-    )
+
+    def found(m: Trial) -> tuple[ParameterValue, ...]:
+        return (found_value(final if m is members[0] else m.fitted, m.effect, data),)
+
+    each = record_by_record(final, members[0].effect, data)
+    return cause_from(members, found, {record: value for record, (value, _) in each.items()})
 
 
 # ---- gain, blocks, curves ------------------------------------------------------------
@@ -301,7 +265,7 @@ def _gains(
                 Gain(
                     run.name,
                     channel,
-                    SIGNAL_UNITS[channel],
+                    runs.kind.units[channel],
                     rms_b * noise,
                     rms_e * noise,
                     float(np.sqrt(floor[c])) * noise,
@@ -343,7 +307,7 @@ def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Ser
                     run.name,
                     run.role,
                     channel,
-                    SIGNAL_UNITS[channel],
+                    part.kind.units[channel],
                     run.time,
                     measured,
                     base_curve,
@@ -356,5 +320,5 @@ def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Ser
 
 
 def _inputs(kind: Kind, run: Run) -> dict[str, Array]:
-    found = {f"{n} [{SIGNAL_UNITS[n]}]": run.signals[n] for n in kind.shown if n in run.signals}
+    found = {f"{n} [{kind.units[n]}]": run.signals[n] for n in kind.shown if n in run.signals}
     return found | kind.derived(run) | {"time [s]": run.time - run.time[0]}

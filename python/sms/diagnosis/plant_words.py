@@ -79,7 +79,7 @@ def conclusion(
 
 def block_of(block: str) -> tuple[str, ...]:
     """Which equations of the simulation a block of the catalogue can be seen in."""
-    return {
+    known = {
         "force": ("force",),
         "valve": ("flow",),
         "supply": ("flow", "supply"),
@@ -87,7 +87,8 @@ def block_of(block: str) -> tuple[str, ...]:
         "control": ("flow",),
         "sensors": ("reading", "force", "flow"),
         "mechanism": ("reading", "force"),
-    }[block]
+    }
+    return known.get(block, (block,))
 
 
 def _worth(gain: Sequence[Gain]) -> str:
@@ -97,4 +98,4 @@ def _worth(gain: Sequence[Gain]) -> str:
         worst = max((g for g in gain if g.signal == signal), key=lambda g: g.baseline_rms)
         old, new = format_aligned([worst.baseline_rms, worst.extended_rms], worst.unit)
         parts.append(f"{spaced(signal)} {old} to {new}")
-    return f"On records the fit has not seen, the error over a second falls: {', '.join(parts)}."
+    return f"On records the fit has not seen, the error within a window falls: {', '.join(parts)}."

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
@@ -245,3 +247,20 @@ class Diagnosis:
 
 def _without_series(items: list[tuple[str, Any]]) -> dict[str, Any]:
     return {name: value for name, value in items if name != "series"}
+
+
+def as_json(diagnosis: Diagnosis) -> str:
+    """The text of diagnosis.json."""
+    plain = _plain(diagnosis.to_dict())
+    return json.dumps(plain, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no NaN and no infinity: both become null."""
+    if isinstance(value, dict):
+        return {key: _plain(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

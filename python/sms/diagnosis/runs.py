@@ -15,16 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.diagnosis.kind import Kind, Run, WindowProblem
-from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.result import Array
 from sms.io.records import Record
 from sms.io.rig import Rig
-from sms.io.signals import SIGNAL_UNITS
 
 Index = NDArray[np.int64]
-
-SHORT = 0.025
-"""s: what differs over this time is noise; what lasts longer a model could explain."""
 
 
 def make_run(rig: Rig, record: Record) -> Run:
@@ -44,20 +39,20 @@ def make_run(rig: Rig, record: Record) -> Run:
     )
 
 
-def noise_of(rig: Rig, runs: Sequence[Run]) -> dict[str, float]:
+def noise_of(rig: Rig, kind: Kind, runs: Sequence[Run]) -> dict[str, float]:
     """Standard deviation of one sample of each output, SI: as declared, else from how neighbours differ."""
     noise = {}
-    for signal in KINDS[rig.kind].outputs:
+    for signal in kind.outputs:
         source = rig.signals.get(signal)
         declared = None if source is None else source.noise
-        steps = [_sample_noise(r.signals[signal]) for r in runs if signal in r.signals]
+        steps = [sample_noise(r.signals[signal]) for r in runs if signal in r.signals]
         measured = float(np.median(steps)) if steps else 1.0
         resolution = 0.0 if source is None else source.resolution
         noise[signal] = max(declared or measured, resolution / np.sqrt(12.0), 1e-12)
     return noise
 
 
-def _sample_noise(values: Array) -> float:
+def sample_noise(values: Array) -> float:
     """From third differences, which a smooth motion hardly has."""
     return float(np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0))
 
@@ -69,13 +64,10 @@ class Runs:
     rig: Rig
     motions: tuple[Run, ...]
     noise: dict[str, float]
+    kind: Kind
 
     whitened = True
     """Residuals are in units of the declared noise."""
-
-    @property
-    def kind(self) -> Kind:
-        return KINDS[self.rig.kind]
 
     @cached_property
     def channels(self) -> tuple[str, ...]:
@@ -126,7 +118,7 @@ class Runs:
         """(rows,) each: the signals along which a residual may be arranged, SI."""
         names = [n for n in self.motions[0].signals if all(n in m.signals for m in self.motions)]
         found = {
-            f"{n} [{SIGNAL_UNITS[n]}]": self.covariate([m.signals[n] for m in self.motions])
+            f"{n} [{self.kind.units[n]}]": self.covariate([m.signals[n] for m in self.motions])
             for n in names
             if n != "setpoint"
         }
@@ -137,10 +129,10 @@ class Runs:
         return found
 
     def floor(self, residual: Array) -> Array:
-        """(channels,): mean square of what differs within SHORT, in units of the declared noise."""
+        """(channels,): mean square of what differs within `kind.short`, in units of the declared noise."""
         out = np.empty(len(self.channels))
         for c in range(len(self.channels)):
-            lag = max(1, round(SHORT / self.motions[0].step))
+            lag = max(1, round(self.kind.short / self.motions[0].step))
             of_channel = residual[self.channel == c]
             same = self.block[self.channel == c]
             together = same[lag:] == same[:-lag]

@@ -9,7 +9,7 @@ distribution under random signs of whole windows, as in statistics.py.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,7 @@ from sms.diagnosis.gauss_newton import changed
 from sms.diagnosis.kind import Problem
 from sms.diagnosis.result import Array
 from sms.diagnosis.statistics import Index, sum_by
-from sms.parameters import PARAMETERS
+from sms.parameters import Parameter
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,11 @@ class Nuisance:
 
 
 def columns_of(
-    problem: Problem, params: _core.Params, residual: Array, effects: Sequence[Effect]
+    problem: Problem,
+    params: _core.Params,
+    residual: Array,
+    effects: Sequence[Effect],
+    table: Mapping[str, Parameter],
 ) -> Array:
     """(rows, m): change of the residual with the first parameter of each effect; by a step where it has no slope."""
     smooth = [e.parameters[0] for e in effects if e.step is None]
@@ -92,7 +96,7 @@ def columns_of(
             place += 1
             continue
         name = effect.parameters[0]
-        step = effect.step if params[name] == PARAMETERS[name].default else 0.02 * params[name]
+        step = effect.step if params[name] == table[name].default else 0.02 * params[name]
         there, _ = problem.evaluate(changed(params, [name], np.array([params[name] + step])))
         columns[:, i] = (there - residual) / step
     return columns

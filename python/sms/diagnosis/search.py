@@ -29,7 +29,6 @@ from sms.diagnosis.screening import Screen, project, screen
 from sms.diagnosis.statistics import score_test
 from sms.diagnosis.visible import raw_columns
 from sms.io.rig import Rig
-from sms.parameters import PARAMETERS
 
 SIGNIFICANT = 0.01
 """Largest chance, over all candidates of a round together, of naming one on data without any effect."""
@@ -96,7 +95,7 @@ def _allowed_signs(effect: Effect, current: Fitted, rig: Rig) -> tuple[bool, boo
     """Whether the effect's parameter may still fall, and rise."""
     name = effect.parameters[0]
     low, high = effect.plausible_range(rig.declared(name).value)
-    low, high = max(low, PARAMETERS[name].lower), min(high, PARAMETERS[name].upper)
+    low, high = max(low, rig.table[name].lower), min(high, rig.table[name].upper)
     return current.params[name] > low, current.params[name] < high
 
 
@@ -143,7 +142,11 @@ def _first_guess(effect: Effect, current: Fitted, found: Screen, k: int) -> _cor
     if effect.step is None:
         return current.params
     size = float(
-        np.clip(current.params[name] + found.estimate[k], 0.1 * effect.step, PARAMETERS[name].upper)
+        np.clip(
+            current.params[name] + found.estimate[k],
+            0.1 * effect.step,
+            current.hypothesis.table[name].upper,
+        )
     )
     return changed(current.params, [name], np.array([size]))
 

@@ -14,7 +14,6 @@ from sms.diagnosis.result import Array, NotTestable
 from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import columns_of, project
 from sms.diagnosis.statistics import covariance_of
-from sms.parameters import PARAMETERS
 from sms.units_display import format_quantity
 
 DETECTION = 3.0
@@ -46,7 +45,8 @@ def testable(
 
 
 def raw_columns(fitted: Fitted, comparison: Comparison | Runs, effects: Sequence[Effect]) -> Array:
-    return columns_of(comparison.problem, fitted.params, fitted.fit.residual, effects)
+    table = fitted.hypothesis.table
+    return columns_of(comparison.problem, fitted.params, fitted.fit.residual, effects, table)
 
 
 def _reduced_columns(
@@ -72,9 +72,11 @@ def _why_not_asked(effect: Effect, data: Data) -> str:
 def _why_blind(effect: Effect, fitted: Fitted, data: Data, raw: Array, column: Array) -> str:
     if not np.any(raw):
         return "it leaves no trace in the signals of this rig"
-    reason = missing_excitation(effect.needs, data.identify, data.rig.declared("stroke").value)
-    if reason:
-        return reason
+    if effect.needs:
+        stroke = data.rig.declared("stroke").value
+        reason = missing_excitation(effect.needs, data.identify, stroke)
+        if reason:
+            return reason
     if np.linalg.norm(column) < 1e-6 * np.linalg.norm(raw):
         return (
             "all it would leave is undone by parameters that are fitted, or that may move this far within "
@@ -89,6 +91,6 @@ def _why_blind(effect: Effect, fitted: Fitted, data: Data, raw: Array, column: A
     ):  # the residual still holds what the effect itself may have left there
         error = 1.0 / float(np.linalg.norm(column))
     if error * DETECTION > max(abs(low), abs(high)):
-        least = format_quantity(DETECTION * error, PARAMETERS[name].unit, name)
+        least = format_quantity(DETECTION * error, data.rig.table[name].unit, name)
         return f"these records would show it from {least} on only, more than is plausible"
     return ""

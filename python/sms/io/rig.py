@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from sms import _core
 from sms.io.errors import InputError, did_you_mean, nearest
 from sms.io.schema import (
     ControlTable,
@@ -111,6 +112,15 @@ class Rig:
         if name not in PARAMETERS:
             raise KeyError(f"no parameter '{name}'; {did_you_mean(name, PARAMETERS)}")
         return Declaration(PARAMETERS[name].default, PARAMETERS[name].uncertainty)
+
+    @property
+    def table(self) -> Mapping[str, Parameter]:
+        """Bounds and units of every parameter that the model has."""
+        return PARAMETERS
+
+    def start(self) -> _core.Params:
+        """Every parameter as declared."""
+        return _core.Params(**{name: declared.value for name, declared in self.parameters.items()})
 
 
 def load_rig(path: str | os.PathLike[str]) -> Rig:
