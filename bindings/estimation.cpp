@@ -3,11 +3,11 @@
 
 #include "bind.hpp"
 #include "choice.hpp"
-#include "estimation/bench_plant.hpp"
 #include "estimation/cylinder.hpp"
 #include "estimation/fit.hpp"
 #include "estimation/tank.hpp"
 #include "laws.hpp"
+#include "shooting_problem.hpp"
 
 namespace sms_python {
 namespace {
@@ -71,77 +71,6 @@ std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const est::Problem& problem,
   return {residual, jacobian};
 }
 
-// ---- bench ----
-
-using BenchProblem = est::ShootingProblem<est::BenchPlant>;
-
-sms::ActuatorLaws make_laws(const std::string& friction, const std::string& valve, const std::string& chambers) {
-  using sms::ChamberLaw;
-  using sms::ValveLaw;
-  return {choice<ValveLaw>("valve", valve,
-                           {{"iso_0_4_mpa", ValveLaw::iso_0_4_mpa},
-                            {"iso_0_2_mpa", ValveLaw::iso_0_2_mpa},
-                            {"classic", ValveLaw::classic}}),
-          friction_law(friction),
-          choice<ChamberLaw>("chambers", chambers,
-                             {{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}),
-          false};
-}
-
-est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::VectorXd extension,
-                                   Eigen::VectorXd pressure_lower, Eigen::VectorXd pressure_upper,
-                                   Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions) {
-  est::BenchRecord record{step,
-                          std::move(command),
-                          std::move(extension),
-                          std::move(pressure_lower),
-                          std::move(pressure_upper),
-                          std::move(supply_pressure),
-                          {}};
-  for (const auto& condition : conditions) {
-    record.conditions.emplace_back(param_index(condition.first), condition.second);
-  }
-  return record;
-}
-
-std::unique_ptr<BenchProblem> make_bench_problem(std::vector<est::BenchRecord> records,
-                                                 const std::map<std::string, double>& noise,
-                                                 const std::string& friction, const std::string& valve,
-                                                 const std::string& chambers, double window, double longest_step,
-                                                 int threads) {
-  const est::BenchNoise sizes{noise.at("extension"), noise.at("chamber_pressure_lower"),
-                              noise.at("chamber_pressure_upper"), noise.at("supply_pressure")};
-  return std::make_unique<BenchProblem>(
-      est::BenchPlant(std::move(records), sizes, make_laws(friction, valve, chambers), longest_step),
-      est::WindowOptions{window, 0.1, threads});
-}
-
-void bind_bench(py::module_& m) {
-  py::class_<est::BenchRecord>(m, "BenchRecord", "One evenly sampled record of the rig 'bench'; arrays (n,), SI.")
-      .def(py::init(&make_bench_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
-           py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
-           py::arg("conditions") = std::map<std::string, double>());
-  py::class_<est::Window>(m, "Window", "A stretch of a record that is simulated from an initial state of its own.")
-      .def_readonly("record", &est::Window::record)
-      .def_readonly("first", &est::Window::first)
-      .def_readonly("samples", &est::Window::samples)
-      .def_readonly("row", &est::Window::row)
-      .def_readonly("rows", &est::Window::rows);
-  py::class_<BenchProblem, est::Problem>(m, "BenchProblem", "Prediction errors over windows, in units of the noise.")
-      .def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
-           py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
-           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
-           py::arg("threads") = 1)
-      .def_property_readonly("windows", &BenchProblem::windows)
-      .def("settle", &BenchProblem::settle, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
-           "Let later searches for initial states begin at the best ones of these parameters.")
-      .def("errors", &BenchProblem::errors, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
-           "(rows,): predicted less measured over the noise, at the best initial states.")
-      .def("hidden", &BenchProblem::hidden, py::arg("params"), py::arg("knots"),
-           py::call_guard<py::gil_scoped_release>(),
-           "(rows, 3 knots): derivatives against a hidden force and hidden flows into either chamber, in each window.");
-}
-
 }  // namespace
 
 void bind_estimation(py::module_& m) {
@@ -172,7 +101,7 @@ void bind_estimation(py::module_& m) {
            py::arg("heat") = "polytropic")
       .def_property_readonly("step", &est::TankProblem::step, "s, of the integration");
 
-  bind_bench(m);
+  bind_plant_problems(m);
 
   py::class_<est::Fit>(m, "Fit", "The result of a least-squares fit.")
       .def_readonly("params", &est::Fit::params)

@@ -1,46 +1,22 @@
 #include "estimation/bench_plant.hpp"
 
-#include <string>
-
 namespace sms {
 namespace estimation {
 namespace {
 
 void check(const BenchRecord& record, std::size_t number) {
-  const auto refuse = [number](const std::string& what) {
-    throw std::invalid_argument("bench record " + std::to_string(number) + ": " + what);
-  };
-  const auto check_one = [&](const Eigen::VectorXd& signal, const char* name) {
-    if (signal.size() != record.command.size()) {
-      refuse(std::string(name) + " has " + std::to_string(signal.size()) + " samples, command has " +
-             std::to_string(record.command.size()));
-    }
-    if (!signal.allFinite()) {
-      refuse(std::string(name) + " holds a value that is not a finite number");
-    }
-  };
-  if (!(record.step > 0.0) || record.command.size() < 20) {
-    refuse("a step of time above zero and 20 samples at least are needed");
+  const std::string name = "bench record " + std::to_string(number);
+  const Eigen::Index samples = record.command.size();
+  if (!(record.step > 0.0) || samples < 20) {
+    throw std::invalid_argument(name + ": a step of time above zero and 20 samples at least are needed");
   }
-  check_one(record.command, "command");
-  check_one(record.extension, "extension");
-  check_one(record.pressure_lower, "pressure_lower");
-  check_one(record.pressure_upper, "pressure_upper");
+  detail::check_signal(name, "command", record.command, samples);
+  detail::check_signal(name, "extension", record.extension, samples);
+  detail::check_signal(name, "pressure_lower", record.pressure_lower, samples);
+  detail::check_signal(name, "pressure_upper", record.pressure_upper, samples);
   if (record.supply_pressure.size() > 0) {
-    check_one(record.supply_pressure, "supply_pressure");
+    detail::check_signal(name, "supply_pressure", record.supply_pressure, samples);
   }
-}
-
-// Value and slope at the first of some samples, by a parabola through them.
-Eigen::Vector2d beginning(const Eigen::VectorXd& signal, int first, int samples, double step) {
-  const int count = std::min<int>(samples, static_cast<int>(signal.size()) - first);
-  Eigen::MatrixX3d powers(count, 3);
-  for (int k = 0; k < count; ++k) {
-    const double t = k * step;
-    powers.row(k) << 1.0, t, t * t;
-  }
-  const Eigen::Vector3d fitted = powers.colPivHouseholderQr().solve(signal.segment(first, count));
-  return fitted.head<2>();
 }
 
 }  // namespace
@@ -56,10 +32,10 @@ BenchPlant::BenchPlant(std::vector<BenchRecord> records, const BenchNoise& noise
 Eigen::VectorXd BenchPlant::guess(int record, int first) const {
   const BenchRecord& r = of(record);
   const int samples = std::max(8, static_cast<int>(0.05 / r.step));
-  const Eigen::Vector2d motion = beginning(r.extension, first, samples, r.step);
+  const Eigen::Vector2d motion = detail::beginning(r.extension, first, samples, r.step);
   Eigen::VectorXd start(kStart);
-  start << motion[0], motion[1], beginning(r.pressure_lower, first, samples, r.step)[0],
-      beginning(r.pressure_upper, first, samples, r.step)[0],
+  start << motion[0], motion[1], detail::beginning(r.pressure_lower, first, samples, r.step)[0],
+      detail::beginning(r.pressure_upper, first, samples, r.step)[0],
       r.supply_pressure.size() > 0 ? r.supply_pressure[first] : 0.0, 0.0;
   if (r.supply_pressure.size() == 0) {
     start[4] = 4e5;

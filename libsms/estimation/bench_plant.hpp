@@ -13,6 +13,7 @@
 // A has the slope of friction and contact for (x, v), and a chamber's flow over its pressure difference for each pressure.
 #pragma once
 
+#include "estimation/recorded.hpp"
 #include "estimation/shooting.hpp"
 #include "sms/bench.hpp"
 #include "sms/integrate.hpp"
@@ -79,29 +80,6 @@ class BenchPlant {
 
 namespace detail {
 
-// How many whole samples a clock is late, and what is left of it, s.
-template <typename S>
-int whole_samples(double step, const S& late, S* rest) {
-  const int samples = static_cast<int>(std::lround(value_of(late) / step));
-  *rest = late - S(samples * step);
-  return samples;
-}
-
-// The command at a time counted in samples; before the first and after the last it is held.
-template <typename S>
-S command_at(const Eigen::VectorXd& command, const S& at) {
-  const double position = value_of(at);
-  const Eigen::Index last = command.size() - 1;
-  if (!(position > 0.0)) {
-    return S(command[0]);
-  }
-  if (!(position < static_cast<double>(last))) {
-    return S(command[last]);
-  }
-  const Eigen::Index k = static_cast<Eigen::Index>(position);
-  return S(command[k]) + (at - S(static_cast<double>(k))) * S(command[k + 1] - command[k]);
-}
-
 // A quantity that follows `now` with a lag of first order, a time h later; in between `now` runs straight to `then`.
 template <typename S>
 S lagging(const S& late, const S& now, const S& then, const S& lag, const S& h) {
@@ -124,14 +102,6 @@ void add_seal_effects(const Bench<S>& bench, const BenchState<S>& state, const B
   if (!is_absent(p.friction_lag)) {
     rate.velocity += p.viscous_friction * (state.velocity - film) / p.moving_mass;
   }
-}
-
-// |flow| over pressure difference, kg/(s Pa).
-template <typename S>
-S secant(const S& flow, const S& from, const S& to) {
-  using std::abs;
-  const S difference = abs(from - to);
-  return abs(flow) / (difference > S(100) ? difference : S(100));
 }
 
 // A of the step.
@@ -202,10 +172,8 @@ void solve_stiff(const BenchStiffness<S>& s, const S& g, BenchState<S>& rate) {
 template <typename S>
 S* BenchPlant::readings(const Params<S>& p, const BenchRecord& record, int sample, const BenchState<S>& state,
                         const BenchState<S>& rate, const S& force, S* out) const {
-  // Predicted against the reading `samples` later: there the late clock has this sample. Beyond the record: nothing.
   const auto error = [sample](const S& predicted, const Eigen::VectorXd& measured, int samples, double noise) {
-    const Eigen::Index k = sample + samples;
-    return k < 0 || k >= measured.size() ? S(0) : S((predicted - S(measured[k])) * S(1.0 / noise));
+    return detail::reading_error(predicted, measured, sample + samples, noise);
   };
   S rest;
   const int late = detail::whole_samples(record.step, p.clock_skew_extension, &rest);
@@ -271,13 +239,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
     if (hidden == nullptr) {
       return;
     }
-    const double place = std::min(at / window.samples * (knots - 1), knots - 1.001);
-    const int k = static_cast<int>(place);
-    const S weight(place - k);
-    const auto value = [&](int input) {
-      const S* of_input = hidden + input * knots;
-      return of_input[k] + weight * (of_input[k + 1] - of_input[k]);
-    };
+    const auto value = [&](int input) { return detail::hidden_at(hidden + input * knots, knots, window.samples, at); };
     rate.velocity += value(0) / p.moving_mass;
     rate.actuator.lower.pressure += value(1) * p.gas_constant * p.air_temperature / t.actuator.lower.volume;
     rate.actuator.upper.pressure += value(2) * p.gas_constant * p.air_temperature / t.actuator.upper.volume;

@@ -4,7 +4,11 @@
 //   p' = R / V (alpha_i m_in' T - alpha_o m_out' T)                                              (eq. 5.5, 5.15)
 //
 // or, with the full energy equation, pressure and temperature with the heat of the wall. The flow is what the tables say:
-// mass_flow_gain belongs to a cylinder.
+// they were measured on a tank, and mass_flow_gain belongs to a cylinder.
+//
+// Effects, absent until data switches them on: tank_flow_change (flow_conductance), exhaust_restriction, valve_leakage,
+// the leak of the lower chamber's port (chamber_leakage_lower), tube, supply_droop, and heat_share: between the source's
+// isothermal tank (0) and the full energy equation with heat through the wall (1). Valid for p, T > 0.
 #pragma once
 
 #include "sms/actuator.hpp"
@@ -15,17 +19,21 @@ template <typename S>
 struct TankState {
   using Scalar = S;
   Gas<S> gas;
-  Lag<S> spool;  // V, V/s
+  Lag<S> spool;       // V, V/s
+  S supply_pressure;  // in the reservoir at the valve, Pa; with supply_line_resistance
 };
 
 template <typename S>
 struct TankInput {
-  S command;          // V
-  S supply_pressure;  // Pa absolute
+  S command;  // V
 };
 
 template <typename S>
 struct TankTerms {
+  Gas<S> air;  // as the flows see it
+  ChamberSpace<S> space;
+  S feed;  // kg/s, supply to tank
+  S vent;  // kg/s, tank to ambient, through the valve
   ChamberFlow<S> flow;
 };
 
@@ -36,24 +44,93 @@ struct Tank {
 };
 
 template <typename S>
-sms_status derivative(const Tank<S>& tank, const TankState<S>& state, const TankInput<S>& input, TankTerms<S>& t,
-                      TankState<S>& rate) {
+bool is_partly_warm(const Tank<S>& tank) {
+  return tank.laws.chamber == ChamberLaw::polytropic && !is_absent(tank.params.heat_share);
+}
+
+// The temperature that flows and thermometer see.
+template <typename S>
+Gas<S> tank_air(const Tank<S>& tank, const Gas<S>& gas) {
   const Params<S>& p = tank.params;
-  const S opening = valve_opening(p, state.spool.value);
-  const OpenEdges<S> edges = open_edges(p, tank.laws.valve, heat_ratios(p, tank.laws.chamber), opening);
-  const bool charging = opening >= S(0);
-  const Gas<S> outside = {charging ? input.supply_pressure : p.ambient_pressure, p.air_temperature};
-  t.flow = {S(0), S(0), S(0)};
-  add_flow<S>(t.flow, edge_flow(p, tank.laws.valve, charging ? edges.feed : edges.vent, edges.area, outside, state.gas),
-              state.gas, outside);
-  rate.gas = chamber_rate(p, tank.laws.chamber, state.gas, tank_space(p), t.flow);
-  rate.spool = spool_rate(p, state.spool, input.command);
-  return is_finite(rate.gas.pressure) ? SMS_OK : SMS_NOT_A_NUMBER;
+  if (!is_partly_warm(tank)) {
+    return gas;
+  }
+  return {gas.pressure, p.air_temperature + p.heat_share * (gas.temperature - p.air_temperature)};
 }
 
 template <typename S>
+HeatRatios<S> tank_ratios(const Tank<S>& tank) {
+  const Params<S>& p = tank.params;
+  HeatRatios<S> ratios = heat_ratios(p, tank.laws.chamber);
+  if (is_partly_warm(tank)) {
+    ratios.in += p.heat_share * (p.heat_capacity_ratio - ratios.in);
+    ratios.out += p.heat_share * (p.heat_capacity_ratio - ratios.out);
+  }
+  return ratios;
+}
+
+// What flows through the valve and past it.
+template <typename S>
+void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) {
+  const Params<S>& p = tank.params;
+  const S opening = valve_opening(p, state.spool.value);
+  const OpenEdges<S> edges = open_edges(p, tank.laws.valve, tank_ratios(tank), opening);
+  const Gas<S> supply = {state.supply_pressure, p.air_temperature}, outside = {p.ambient_pressure, p.air_temperature};
+  const S gain = S(1) + p.tank_flow_change;
+  t.air = tank_air(tank, state.gas);
+  t.space = tank_space(p);
+  t.space.volume += tube_volume(p);
+  t.feed = t.vent = S(0);
+  if (opening >= S(0)) {
+    t.feed = gain * edge_flow(p, tank.laws.valve, edges.feed, edges.area, supply, t.air);
+  } else {
+    t.vent =
+        gain * (S(1) + p.exhaust_flow_change) * edge_flow(p, tank.laws.valve, edges.vent, edges.area, t.air, outside);
+  }
+  if (!is_absent(p.tube_length)) {
+    const S passes = tube_transmission<S>(p, t.feed - t.vent, t.air.pressure);
+    t.feed *= passes;
+    t.vent *= passes;
+  }
+  if (!is_absent(p.valve_leakage)) {
+    const IsoFlow<S> gap = {p.valve_leakage, S(0), S(2)};
+    t.feed += iso_mass_flow(p, gap, supply, t.air);
+    t.vent += iso_mass_flow(p, gap, t.air, outside);
+  }
+  t.flow = {S(0), S(0), S(0)};
+  add_flow(t.flow, t.feed, t.air, supply);
+  add_flow<S>(t.flow, -t.vent, t.air, outside);
+  add_flow<S>(t.flow, p.chamber_leakage_lower * (outside.pressure - t.air.pressure), t.air, outside);
+}
+
+// Pa/s and K/s
+template <typename S>
+Gas<S> tank_gas_rate(const Tank<S>& tank, const TankState<S>& state, const TankTerms<S>& t) {
+  const Params<S>& p = tank.params;
+  Gas<S> rate = chamber_rate(p, tank.laws.chamber, state.gas, t.space, t.flow);
+  if (is_partly_warm(tank)) {
+    const GasRate<S> warm = energy_rates(p, state.gas, t.space, t.flow);
+    rate.pressure += p.heat_share * (warm.pressure - rate.pressure);
+    rate.temperature = warm.temperature;
+  }
+  return rate;
+}
+
+template <typename S>
+sms_status derivative(const Tank<S>& tank, const TankState<S>& state, const TankInput<S>& input, TankTerms<S>& t,
+                      TankState<S>& rate) {
+  const Params<S>& p = tank.params;
+  fill_tank(tank, state, t);
+  rate.gas = tank_gas_rate(tank, state, t);
+  rate.spool = spool_rate(p, state.spool, input.command);
+  rate.supply_pressure = reservoir_pressure_rate(p, state.supply_pressure, t.feed);
+  return is_finite(rate.gas.pressure) ? SMS_OK : SMS_NOT_A_NUMBER;
+}
+
+// The valve closed, the reservoir full.
+template <typename S>
 TankState<S> tank_at_rest(const Params<S>& p, const S& pressure) {
-  return {{pressure, p.air_temperature}, {p.valve_centre, S(0)}};
+  return {{pressure, p.air_temperature}, {p.valve_centre, S(0)}, p.supply_pressure};
 }
 
 }  // namespace sms

@@ -12,6 +12,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Literal
 
+from sms.io.rig import Rig
 from sms.parameters import PARAMETERS
 
 SIGNALS_IN_WORDS = {
@@ -21,6 +22,8 @@ SIGNALS_IN_WORDS = {
     "extension": "position",
     "supply_pressure": "supply pressure",
     "chamber_pressure": "chamber pressures",
+    "tank_pressure": "tank's pressure",
+    "tank_temperature": "tank's temperature",
 }
 
 
@@ -47,6 +50,8 @@ class Effect:
     """The size at which its footprint is taken, where it has no slope at its neutral value."""
     absolute: bool = False
     """Of a shifted parameter: `plausible` is a shift in its unit, not relative."""
+    chambers: str | None = None
+    """The law of the chambers under which the hypothesis stands; None under any."""
 
     @property
     def key(self) -> str:
@@ -83,6 +88,7 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
             of_sensor=of_sensor,
             step=entry.get("step"),
             absolute=entry.get("absolute", False),
+            chambers=entry.get("chambers"),
             **text,
         )
 
@@ -99,3 +105,8 @@ def catalogue(kind: str = "cylinder") -> tuple[Effect, ...]:
             if parameter not in PARAMETERS:
                 raise KeyError(f"{name}: {effect.id} names the unknown parameter {parameter}")
     return effects
+
+
+def effects_of(rig: Rig) -> tuple[Effect, ...]:
+    """The hypotheses that stand for a simulated rig with its laws."""
+    return tuple(e for e in catalogue(rig.kind) if e.chambers in (None, rig.model.chambers))

@@ -7,9 +7,11 @@ from types import MappingProxyType
 
 from sms.diagnosis.kind import Kind
 from sms.diagnosis.kind_bench import BENCH
+from sms.diagnosis.kind_tank import TANK
 
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {
+        "tank": TANK,
         "bench": BENCH,
     }
 )

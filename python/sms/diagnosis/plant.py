@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sms.diagnosis.catalogue import Effect, catalogue
+from sms.diagnosis.catalogue import Effect, effects_of
 from sms.diagnosis.evidence import candidates_of, cause_from, value_of
 from sms.diagnosis.excess import LEAST, LEAST_OF_ONE, Excess, excess_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, nuisance_of, refitted
@@ -97,7 +97,7 @@ def diagnose_plant(
             f"{rig.path}, [control] controller: the controller cannot be simulated in a diagnosis yet; "
             'write controller = "recorded" and record valve_command'
         )
-    case = investigate(make_data(rig, records), catalogue(rig.kind), rng, progress)
+    case = investigate(make_data(rig, records), effects_of(rig), rng, progress)
     return complete(blank, case, rng, progress)
 
 

@@ -1,0 +1,128 @@
+// Bench and tank as problems of windows.
+#include "shooting_problem.hpp"
+
+#include <memory>
+
+#include "estimation/bench_plant.hpp"
+#include "estimation/tank_plant.hpp"
+
+namespace sms_python {
+namespace {
+
+namespace est = sms::estimation;
+
+using BenchProblem = est::ShootingProblem<est::BenchPlant>;
+using TankPlantProblem = est::ShootingProblem<est::TankPlant>;
+using Noise = std::map<std::string, double>;
+
+constexpr double kRunUp = 0.1;  // s
+
+est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::VectorXd extension,
+                                   Eigen::VectorXd pressure_lower, Eigen::VectorXd pressure_upper,
+                                   Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions) {
+  return {step,
+          std::move(command),
+          std::move(extension),
+          std::move(pressure_lower),
+          std::move(pressure_upper),
+          std::move(supply_pressure),
+          conditions_of(conditions)};
+}
+
+std::unique_ptr<BenchProblem> make_bench_problem(std::vector<est::BenchRecord> records, const Noise& noise,
+                                                 const std::string& friction, const std::string& valve,
+                                                 const std::string& chambers, double window, double longest_step,
+                                                 int threads) {
+  const est::BenchNoise sizes{noise.at("extension"), noise.at("chamber_pressure_lower"),
+                              noise.at("chamber_pressure_upper"), noise.at("supply_pressure")};
+  return std::make_unique<BenchProblem>(
+      est::BenchPlant(std::move(records), sizes, laws_of(friction, valve, chambers), longest_step),
+      est::WindowOptions{window, kRunUp, threads});
+}
+
+est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eigen::VectorXd pressure,
+                                      Eigen::VectorXd temperature, Eigen::VectorXd supply_pressure,
+                                      const std::map<std::string, double>& conditions) {
+  return {step,
+          std::move(command),
+          std::move(pressure),
+          std::move(temperature),
+          std::move(supply_pressure),
+          conditions_of(conditions)};
+}
+
+std::unique_ptr<TankPlantProblem> make_tank_problem(std::vector<est::TankPlantRecord> records, const Noise& noise,
+                                                    const std::string& valve, const std::string& chambers,
+                                                    double window, double longest_step, int threads) {
+  const est::TankNoise sizes{noise.at("tank_pressure"), noise.at("tank_temperature"), noise.at("supply_pressure")};
+  return std::make_unique<TankPlantProblem>(
+      est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", valve, chambers), longest_step),
+      est::WindowOptions{window, kRunUp, threads});
+}
+
+// Readings of the model from a tank at rest, under the record's command: (samples, channels of the record).
+est::RowMatrix simulate_tank(est::TankPlantRecord record, const Params& params, double pressure,
+                             const std::string& valve, const std::string& chambers, double longest_step) {
+  const int samples = static_cast<int>(record.command.size());
+  for (Eigen::VectorXd* measured : {&record.pressure, &record.temperature, &record.supply_pressure}) {
+    measured->setZero();
+  }
+  const est::TankPlant plant({std::move(record)}, {1.0, 1.0, 1.0}, laws_of("acceleration_dependent", valve, chambers),
+                             longest_step);
+  const int channels = plant.channels(0);
+  const est::Window window{0, 0, samples, 0, samples * channels, {}};
+  const double start[est::TankPlant::kStart] = {pressure, params.air_temperature, params.supply_pressure,
+                                                params.air_temperature};
+  est::RowMatrix readings(samples, channels);
+  plant.simulate(params, window, start, readings.data());
+  return readings;
+}
+
+void bind_bench(py::module_& m) {
+  py::class_<est::BenchRecord>(m, "BenchRecord", "One evenly sampled record of the rig 'bench'; arrays (n,), SI.")
+      .def(py::init(&make_bench_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
+           py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
+           py::arg("conditions") = std::map<std::string, double>());
+  bind_shooting_problem<est::BenchPlant>(m, "BenchProblem")
+      .def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+           py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
+           py::arg("threads") = 1,
+           "noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and "
+           "supply_pressure. Hidden inputs: a force, N, and flows into either chamber, kg/s.");
+}
+
+void bind_tank(py::module_& m) {
+  py::class_<est::TankPlantRecord>(m, "TankPlantRecord",
+                                   "One evenly sampled record of the rig 'tank'; arrays (n,), SI, empty where there "
+                                   "is no sensor.")
+      .def(py::init(&make_tank_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("pressure"),
+           py::arg("temperature") = Eigen::VectorXd(), py::arg("supply_pressure") = Eigen::VectorXd(),
+           py::arg("conditions") = std::map<std::string, double>());
+  bind_shooting_problem<est::TankPlant>(m, "TankPlantProblem")
+      .def(py::init(&make_tank_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+           py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic", py::arg("window") = 1.0,
+           py::arg("longest_step") = 1e-3, py::arg("threads") = 1,
+           "noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden "
+           "inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.");
+  m.def(
+      "simulate_tank", &simulate_tank, py::kw_only(), py::arg("record"), py::arg("params"), py::arg("pressure"),
+      py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic", py::arg("longest_step") = 1e-3,
+      "(n, channels): what the sensors that `record` has would read under its command, of a tank at rest at first, at "
+      "`pressure`, Pa absolute.");
+}
+
+}  // namespace
+
+void bind_plant_problems(py::module_& m) {
+  py::class_<est::Window>(m, "Window", "A stretch of a record that is simulated from an initial state of its own.")
+      .def_readonly("record", &est::Window::record)
+      .def_readonly("first", &est::Window::first)
+      .def_readonly("samples", &est::Window::samples)
+      .def_readonly("row", &est::Window::row)
+      .def_readonly("rows", &est::Window::rows);
+  bind_bench(m);
+  bind_tank(m);
+}
+
+}  // namespace sms_python

@@ -1,0 +1,60 @@
+// What every plant that is held against records window by window (estimation/shooting.hpp) shows to Python.
+#pragma once
+
+#include <pybind11/eigen.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bind.hpp"
+#include "choice.hpp"
+#include "estimation/shooting.hpp"
+#include "laws.hpp"
+#include "sms/actuator.hpp"
+
+namespace sms_python {
+
+// (ParamIndex, by how much it is larger) from names.
+inline std::vector<std::pair<int, double>> conditions_of(const std::map<std::string, double>& by_name) {
+  std::vector<std::pair<int, double>> conditions;
+  for (const auto& condition : by_name) {
+    conditions.emplace_back(param_index(condition.first), condition.second);
+  }
+  return conditions;
+}
+
+inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string& valve, const std::string& chambers) {
+  using sms::ChamberLaw;
+  using sms::ValveLaw;
+  return {choice<ValveLaw>("valve", valve,
+                           {{"iso_0_4_mpa", ValveLaw::iso_0_4_mpa},
+                            {"iso_0_2_mpa", ValveLaw::iso_0_2_mpa},
+                            {"classic", ValveLaw::classic}}),
+          friction_law(friction),
+          choice<ChamberLaw>("chambers", chambers,
+                             {{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}),
+          false};
+}
+
+template <typename Plant>
+py::class_<sms::estimation::ShootingProblem<Plant>, sms::estimation::Problem> bind_shooting_problem(py::module_& m,
+                                                                                                    const char* name) {
+  using Problem = sms::estimation::ShootingProblem<Plant>;
+  py::class_<Problem, sms::estimation::Problem> problem(
+      m, name, "Prediction errors over windows, in units of the noise: for each sample of a window, each output.");
+  problem.def_property_readonly("windows", &Problem::windows)
+      .def("settle", &Problem::settle, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
+           "Let later searches for initial states begin at the best ones of these parameters.")
+      .def("errors", &Problem::errors, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
+           "(rows,): predicted less measured over the noise, at the best initial states.")
+      .def("hidden", &Problem::hidden, py::arg("params"), py::arg("knots"), py::call_guard<py::gil_scoped_release>(),
+           "(rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.");
+  return problem;
+}
+
+// shooting_problem.cpp
+void bind_plant_problems(py::module_& m);
+
+}  // namespace sms_python

@@ -1,0 +1,45 @@
+#include "estimation/tank_plant.hpp"
+
+namespace sms {
+namespace estimation {
+namespace {
+
+void check(const TankPlantRecord& record, std::size_t number) {
+  const std::string name = "tank record " + std::to_string(number);
+  const Eigen::Index samples = record.command.size();
+  if (!(record.step > 0.0) || samples < 20) {
+    throw std::invalid_argument(name + ": a step of time above zero and 20 samples at least are needed");
+  }
+  detail::check_signal(name, "command", record.command, samples);
+  detail::check_signal(name, "pressure", record.pressure, samples);
+  if (record.temperature.size() > 0) {
+    detail::check_signal(name, "temperature", record.temperature, samples);
+  }
+  if (record.supply_pressure.size() > 0) {
+    detail::check_signal(name, "supply_pressure", record.supply_pressure, samples);
+  }
+}
+
+}  // namespace
+
+TankPlant::TankPlant(std::vector<TankPlantRecord> records, const TankNoise& noise, const ActuatorLaws& laws,
+                     double longest_step)
+    : records_(std::move(records)), noise_(noise), laws_(laws), longest_step_(longest_step) {
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    check(records_[i], i);
+  }
+}
+
+Eigen::VectorXd TankPlant::guess(int record, int first) const {
+  const TankPlantRecord& r = of(record);
+  const int samples = std::max(8, static_cast<int>(0.05 / r.step));
+  const double temperature =
+      r.temperature.size() > 0 ? detail::beginning(r.temperature, first, samples, r.step)[0] : 293.0;
+  Eigen::VectorXd start(kStart);
+  start << detail::beginning(r.pressure, first, samples, r.step)[0], temperature,
+      r.supply_pressure.size() > 0 ? r.supply_pressure[first] : 4e5, temperature;
+  return start;
+}
+
+}  // namespace estimation
+}  // namespace sms

@@ -1,0 +1,190 @@
+// The rig "tank" as a plant of shooting.hpp: a vessel behind one port of the valve (tank.hpp), its command and pressure
+// measured, its temperature and the supply's pressure where there are sensors.
+//
+// A window starts with what is free: pressure and temperature of the air, the reservoir's pressure and the thermocouple.
+// Without heat the temperature is that of the supplied air, and the thermometer sees that. The spool follows the command
+// alone and is run up over the 50 ms before the window.
+//
+// The step is that of bench_plant.hpp (ROS2), with the flow over its pressure difference as the slope of each pressure:
+// a small tank behind an open valve is stiff, and so is a reservoir behind a short line.
+#pragma once
+
+#include "estimation/recorded.hpp"
+#include "estimation/shooting.hpp"
+#include "sms/integrate.hpp"
+#include "sms/sensor.hpp"
+#include "sms/tank.hpp"
+
+namespace sms {
+namespace estimation {
+
+// One record, evenly sampled. Readings as they stand in the record; arrays of one length.
+struct TankPlantRecord {
+  double step = 0.0;  // s
+  Eigen::VectorXd command;
+  Eigen::VectorXd pressure;
+  Eigen::VectorXd temperature;                     // empty: not measured
+  Eigen::VectorXd supply_pressure;                 // empty: not measured
+  std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
+};
+
+// Standard deviation of one sample.
+struct TankNoise {
+  double pressure = 1e3;
+  double temperature = 0.1;
+  double supply_pressure = 1e3;
+};
+
+class TankPlant {
+ public:
+  static constexpr int kStart = 4;   // p, T, p_R, T_tc
+  static constexpr int kHidden = 2;  // mass flow into the tank, kg/s; pressure at the head of the supply line, Pa
+
+  // std::invalid_argument for arrays of different lengths or numbers that are not finite.
+  TankPlant(std::vector<TankPlantRecord> records, const TankNoise& noise, const ActuatorLaws& laws,
+            double longest_step);
+
+  static double start_scale(int k) {
+    constexpr double scale[kStart] = {2e4, 20.0, 2e4, 20.0};
+    return scale[k];
+  }
+  int records() const { return static_cast<int>(records_.size()); }
+  int samples(int record) const { return static_cast<int>(of(record).command.size()); }
+  double step(int record) const { return of(record).step; }
+  int channels(int record) const {
+    return 1 + (of(record).temperature.size() > 0 ? 1 : 0) + (of(record).supply_pressure.size() > 0 ? 1 : 0);
+  }
+  Eigen::VectorXd guess(int record, int first) const;
+
+  // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
+  template <typename S>
+  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
+                int knots = 0) const;
+
+ private:
+  const TankPlantRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
+
+  // Writes the whitened errors of one sample and returns where the next begin.
+  template <typename S>
+  S* readings(const Params<S>& p, const TankPlantRecord& record, int sample, const TankState<S>& state,
+              const TankState<S>& rate, const S& temperature, S* out) const;
+
+  std::vector<TankPlantRecord> records_;
+  TankNoise noise_;
+  ActuatorLaws laws_;
+  double longest_step_;
+};
+
+template <typename S>
+S* TankPlant::readings(const Params<S>& p, const TankPlantRecord& record, int sample, const TankState<S>& state,
+                       const TankState<S>& rate, const S& temperature, S* out) const {
+  S rest;
+  const int late = detail::whole_samples(record.step, p.clock_skew_tank, &rest);
+  const S pressure = late_reading<S>(state.gas.pressure, rate.gas.pressure, rest + p.sensor_lag_tank_pressure);
+  *out++ =
+      detail::reading_error<S>(sensor_reading(pressure, p.sensor_gain_tank_pressure, p.sensor_offset_tank_pressure),
+                               record.pressure, sample + late, noise_.pressure);
+  if (record.temperature.size() > 0) {
+    const S warmer = temperature - p.air_temperature;  // a thermocouple measures against its cold junction
+    const S reading =
+        p.air_temperature + sensor_reading<S>(warmer, p.sensor_gain_tank_temperature, p.sensor_offset_tank_temperature);
+    *out++ = detail::reading_error<S>(reading, record.temperature, sample + late, noise_.temperature);
+  }
+  if (record.supply_pressure.size() > 0) {
+    *out++ = detail::reading_error<S>(
+        sensor_reading(state.supply_pressure, p.sensor_gain_supply_pressure, p.sensor_offset_supply_pressure),
+        record.supply_pressure, sample, noise_.supply_pressure);
+  }
+  return out;
+}
+
+template <typename S>
+void TankPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
+                         int knots) const {
+  const TankPlantRecord& record = of(window.record);
+  Tank<S> tank{params, laws_};
+  for (const auto& condition : record.conditions) {
+    param(tank.params, condition.first) += S(condition.second);
+  }
+  const Params<S>& p = tank.params;
+  const S head = p.supply_pressure;
+  const bool droops = p.supply_line_resistance > S(0);
+  const bool warm = laws_.chamber == ChamberLaw::energy || !is_absent(p.heat_share);
+  const double sample = record.step;
+  const int steps = std::max(1, static_cast<int>(std::ceil(sample / longest_step_ - 1e-9)));
+  const S h(sample / steps);
+  const S late = p.command_delay / S(sample);
+
+  TankState<S> state = tank_at_rest<S>(p, start[0]);
+  state.gas.temperature = warm ? start[1] : p.air_temperature;
+  state.supply_pressure = droops ? start[2] : head;
+
+  // The spool: 50 ms of the command before the window.
+  const int run_up = static_cast<int>(0.05 / value_of(h)) + 1;
+  Lag<S> spool{detail::command_at<S>(record.command, S(window.first - double(run_up) / steps) - late), S(0)};
+  for (int i = -run_up; i < 0; ++i) {
+    const S at = S(window.first + double(i) / steps) - late;
+    const Lag<S> k1 = spool_rate(p, spool, detail::command_at<S>(record.command, at));
+    const Lag<S> moved{spool.value + h * k1.value, spool.rate + h * k1.rate};
+    const Lag<S> k2 = spool_rate(p, moved, detail::command_at<S>(record.command, at + S(1.0 / steps)));
+    spool = {spool.value + S(0.5) * h * (k1.value + k2.value), spool.rate + S(0.5) * h * (k1.rate + k2.rate)};
+  }
+  state.spool = spool;
+
+  TankTerms<S> t;
+  TankState<S> k1, k2, moved;
+  const auto rates = [&](double at, TankState<S>& y, TankState<S>& rate) {
+    if (hidden != nullptr) {
+      tank.params.supply_pressure = head + detail::hidden_at(hidden + knots, knots, window.samples, at);
+      y.supply_pressure = droops ? y.supply_pressure : tank.params.supply_pressure;
+    }
+    derivative(tank, y, {detail::command_at<S>(record.command, S(window.first + at) - late)}, t, rate);
+    if (hidden != nullptr) {
+      rate.gas.pressure +=
+          detail::hidden_at(hidden, knots, window.samples, at) * p.gas_constant * p.air_temperature / t.space.volume;
+    }
+  };
+  // A thermocouple without a lag of its own, or with less than a step of it, is read as it was that long ago.
+  const bool lags = value_of(p.thermocouple_time_constant) > value_of(h);
+  const S rate_of_couple = lags ? S(S(1) / p.thermocouple_time_constant) : S(0);
+  const S weight = lags ? low_pass_weight<S>(rate_of_couple, h) : S(0);
+  S couple = warm ? start[3] : p.air_temperature;
+
+  const S g = S(0.29289321881345254) * h;
+  const S air = p.heat_capacity_ratio * p.gas_constant * p.air_temperature;
+  for (int k = 0;; ++k) {
+    rates(k, state, k1);
+    const S seen = tank_air(tank, state.gas).temperature;
+    const S at_once = late_reading<S>(seen, k1.gas.temperature, p.thermocouple_time_constant);
+    residual = readings<S>(p, record, window.first + k, state, k1, lags ? couple : at_once, residual);
+    if (k == window.samples - 1) {
+      return;
+    }
+    for (int i = 0; i < steps; ++i) {
+      if (i > 0) {
+        rates(k + double(i) / steps, state, k1);
+      }
+      const S feed = detail::secant<S>(t.feed, state.supply_pressure, t.air.pressure);
+      const S vent = detail::secant<S>(t.vent, t.air.pressure, p.ambient_pressure);
+      const S of_tank = S(1) + g * air / t.space.volume * (feed + vent);
+      const S of_reservoir =
+          droops ? S(S(1) + g * air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed)) : S(1);
+      k1.gas.pressure /= of_tank;
+      k1.supply_pressure /= of_reservoir;
+      const S before = tank_air(tank, state.gas).temperature;
+      vector_of(moved) = vector_of(state) + h * vector_of(k1);
+      rates(k + double(i + 1) / steps, moved, k2);
+      vector_of(k2) -= S(2) * vector_of(k1);
+      k2.gas.pressure /= of_tank;
+      k2.supply_pressure /= of_reservoir;
+      vector_of(state) += (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
+      if (lags) {
+        couple =
+            low_pass_ramp_step<S>(rate_of_couple, h, weight, couple, before, tank_air(tank, state.gas).temperature);
+      }
+    }
+  }
+}
+
+}  // namespace estimation
+}  // namespace sms

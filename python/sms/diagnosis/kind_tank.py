@@ -1,0 +1,185 @@
+"""The kind "tank": a vessel behind one port of the valve, its pressure measured, perhaps its temperature."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from sms import _core
+from sms.diagnosis.kind import Experiment, Kind, Run
+from sms.diagnosis.result import Array
+from sms.io.rig import Rig
+
+WINDOW = 1.0
+"""s: length of a window."""
+LONGEST_STEP = 1e-3
+"""s: of the integration; the spool of 65 Hz needs it."""
+OUTPUTS = ("tank_pressure", "tank_temperature", "supply_pressure")
+
+
+def make_problem(
+    rig: Rig, runs: Sequence[Run], channels: Sequence[str], noise: Mapping[str, float]
+) -> _core.TankPlantProblem:
+    """The records as the core's problem."""
+    return _core.TankPlantProblem(
+        records=[_record(run, channels) for run in runs],
+        noise={s: noise[s] for s in OUTPUTS},
+        valve=rig.model.valve,
+        chambers=rig.model.chambers,
+        window=WINDOW,
+        longest_step=LONGEST_STEP,
+        threads=int(os.environ.get("SMS_THREADS", "2")),
+    )
+
+
+def _record(run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
+    def measured(signal: str) -> Array:
+        return run.signals[signal] if signal in channels else np.empty(0)
+
+    return _core.TankPlantRecord(
+        step=run.step,
+        command=run.signals["valve_command"],
+        pressure=run.signals["tank_pressure"],
+        temperature=measured("tank_temperature"),
+        supply_pressure=measured("supply_pressure"),
+        conditions=run.conditions,
+    )
+
+
+def derived(run: Run) -> dict[str, Array]:
+    """How fast the tank fills, and which way the command means it to."""
+    return {
+        "pressure rate [Pa/s]": run.rate("tank_pressure"),
+        "direction": np.sign(run.signals["valve_command"] - 5.0),
+    }
+
+
+# ---- experiments ---------------------------------------------------------------------------------
+
+LENGTH = 8.0
+"""s"""
+STEP = 0.005
+"""s, of the proposed record."""
+
+Waveform = Callable[[Array], Array]
+"""Of time (n,): command less the valve's centre, V."""
+
+
+def _levels(times: Sequence[float], volts: Sequence[float]) -> Waveform:
+    """A command that runs from level to level in 20 ms at the given times."""
+
+    def wave(time: Array) -> Array:
+        at, level, now = [0.0], [0.0], 0.0
+        for begin, volt in zip(times, volts, strict=True):
+            at += [begin, begin + 0.02]
+            level += [now, volt]
+            now = volt
+        return np.asarray(np.interp(time, at, level))
+
+    return wave
+
+
+_STROKES = _levels(
+    (0.5, 1.5, 2.0, 3.0, 3.5, 5.0, 5.5, 7.0), (1.2, 0.0, -1.2, 0.0, 2.2, 0.0, -2.2, 0.0)
+)
+_BURSTS = _levels(
+    tuple(0.3 + 0.4 * i + d for i in range(19) for d in (0.0, 0.1)),
+    tuple(v for i in range(19) for v in (0.8 + 0.1 * i if i < 10 else -0.8 - 0.1 * (i - 10), 0.0)),
+)
+_SMALL = _levels((0.5, 2.5, 4.5, 6.5), (0.62, -0.62, 0.75, -0.75))
+_HOLDS = _levels((0.3, 1.0, 4.5, 4.8), (2.0, 0.0, -2.0, 0.0))
+_WIDE = _levels(
+    (0.5, 1.0, 2.0, 2.5, 4.0, 4.5, 6.0, 6.5), (4.5, 0.0, -4.5, 0.0, 4.5, 0.0, -4.5, 0.0)
+)
+
+
+def _chatter(time: Array) -> Array:
+    return np.asarray(1.6 * np.sin(2.0 * np.pi * (0.5 * time + 0.6 * time**2)))
+
+
+def simulated(
+    rig: Rig,
+    params: _core.Params,
+    channels: Sequence[str],
+    *,
+    opening: Waveform,
+    supply_change: float = 0.0,
+) -> Run | None:
+    """The record of a run from ambient pressure; a tank stays between ambient and supply whatever the command."""
+    time = np.arange(0.0, LENGTH, STEP)
+    command = params["valve_centre"] + opening(time)
+    blank = {
+        "tank_pressure": np.zeros(len(time)),
+        "tank_temperature": np.zeros(len(time)),
+        "supply_pressure": np.zeros(len(time)),
+    }
+    changes = {"supply_pressure": supply_change} if supply_change != 0.0 else {}
+    run = Run(
+        "proposed", "identify", time, {"valve_command": command} | blank, frozenset(), changes
+    )
+    predicted = _core.simulate_tank(
+        record=_record(run, channels),
+        params=params,
+        pressure=params["ambient_pressure"] + 5e4,
+        valve=rig.model.valve,
+        chambers=rig.model.chambers,
+        longest_step=LONGEST_STEP,
+    )
+    names = [s for s in OUTPUTS if s in channels]
+    if not np.all(np.isfinite(predicted)):
+        return None
+    signals = {"valve_command": command} | {
+        name: np.ascontiguousarray(predicted[:, i]) for i, name in enumerate(names)
+    }
+    return Run("proposed", "identify", time, signals, frozenset(), changes)
+
+
+MENU = (
+    Experiment(
+        "Fill and vent at two openings, with pauses",
+        "1.2 V and 2.2 V from the centre, 8 s",
+        partial(simulated, opening=_STROKES),
+    ),
+    Experiment(
+        "Bursts of a tenth of a second at ten openings",
+        "0.8 to 1.7 V from the centre, 8 s",
+        partial(simulated, opening=_BURSTS),
+    ),
+    Experiment(
+        "Fill and vent with the valve hardly open",
+        "0.62 and 0.75 V from the centre, two seconds each",
+        partial(simulated, opening=_SMALL),
+    ),
+    Experiment(
+        "Fill, then hold the valve closed; vent, then hold it closed",
+        "three seconds each",
+        partial(simulated, opening=_HOLDS),
+    ),
+    Experiment(
+        "Fill and vent with the valve wide open",
+        "4.5 V from the centre, 8 s",
+        partial(simulated, opening=_WIDE),
+    ),
+    Experiment(
+        "A sweep of the command from 0.5 to 10 Hz",
+        "1.6 V, 8 s",
+        partial(simulated, opening=_chatter),
+    ),
+    Experiment(
+        "Fill and vent at 100 kPa less supply",
+        "read the gauge",
+        partial(simulated, opening=_STROKES, supply_change=-1e5),
+    ),
+)
+
+TANK = Kind(
+    outputs=OUTPUTS,
+    hidden={"flow of the tank": "kg/s", "supply pressure": "Pa"},
+    make_problem=make_problem,
+    derived=derived,
+    shown=("tank_pressure", "valve_command"),
+    menu=MENU,
+)
