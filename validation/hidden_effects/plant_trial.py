@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sms.diagnosis.catalogue import catalogue
+from sms.diagnosis.catalogue import effects_of
 from sms.diagnosis.method import read_and_check
 from sms.diagnosis.plant import found_value, investigate, make_data
 from sms.io.rig import load_rig
@@ -147,7 +147,7 @@ def run_task(task: Task) -> Outcome:
         rig = load_rig(records / "rig.toml")
         read, _ = read_and_check(rig)
         data, rng = make_data(rig, read), np.random.default_rng(task.seed)
-        case = investigate(data, catalogue(rig.kind), rng, lambda text, done: None)
+        case = investigate(data, effects_of(rig), rng, lambda text, done: None)
         named = [
             [m.effect.key.replace(" of ", ":") for m in members] for members in case.outcome.classes
         ]
