@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sms.diagnosis.excess import LEAST
 from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.diagnosis.result import Array
 from sms.diagnosis.search import SIGNIFICANT, Trial
@@ -80,7 +79,9 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
     return ""
 
 
-def best_class(trials: Sequence[Trial], data: Data, rng: np.random.Generator) -> list[Trial]:
+def best_class(
+    trials: Sequence[Trial], current: Fitted, data: Data, rng: np.random.Generator
+) -> list[Trial]:
     """The best accepted trial and those that the data cannot tell from it, in the catalogue's order; or none.
 
     Alike are two effects whose footprints are nearly parallel, or whose unseen records come out equally well
@@ -90,7 +91,7 @@ def best_class(trials: Sequence[Trial], data: Data, rng: np.random.Generator) ->
     if not accepted:
         return []
     if data.validate.whitened:
-        return _best_of_runs(accepted, data)
+        return _best_of_runs(accepted, current, data)
     best = max(accepted, key=lambda t: t.gain)
     counts = resampled(data.validate.record, data.validate.block, rng)
     members = []
@@ -104,26 +105,34 @@ def best_class(trials: Sequence[Trial], data: Data, rng: np.random.Generator) ->
 
 TELLS_APART = 3.0
 """Standard errors of the difference between two rivals, over windows, from which the worse one is out."""
+TELLS_ALIKE_APART = 0.05
+"""Of the chi-square that the best takes: what one that looks alike must leave more, besides, to be out.
+
+A machine differs from any model of it, and a small part of that falls in the direction in which two rivals differ.
+"""
 
 
-def _best_of_runs(accepted: Sequence[Trial], data: Data) -> list[Trial]:
+def _best_of_runs(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
     """As best_class, where each rival has one parameter and all windows count: seen ones and unseen ones alike."""
 
-    def by_window(trial: Trial) -> Array:
-        seen = sum_by(data.identify.block, trial.identified, int(data.identify.block.max()) + 1)
-        unseen = sum_by(data.validate.block, trial.squared, int(data.validate.block.max()) + 1)
-        return np.concatenate([seen, unseen])
+    def by_window(identified: Array, unseen_: Array) -> Array:
+        seen = sum_by(data.identify.block, identified, int(data.identify.block.max()) + 1)
+        rest = sum_by(data.validate.block, unseen_, int(data.validate.block.max()) + 1)
+        return np.concatenate([seen, rest])
 
-    left = {t.effect.key: by_window(t) for t in accepted}
+    left = {t.effect.key: by_window(t.identified, t.squared) for t in accepted}
     best = min(accepted, key=lambda t: float(left[t.effect.key].sum()))
+    before = by_window(current.fit.residual**2, unseen(current, data) ** 2)
+    taken = float(before.sum() - left[best.effect.key].sum())
     members = []
     for trial in accepted:
         worse = left[trial.effect.key] - left[best.effect.key]
         scatter = float(np.std(worse) * np.sqrt(len(worse)))
-        told_apart = float(worse.sum()) > TELLS_APART * scatter or trial.gain < 0.9 * best.gain
-        # What one of two that look alike leaves more may be how the machine differs from any model, unless it is large.
-        alike = best.similarity[trial.effect.key] > ALIKE and trial.gain > 0.8 * best.gain
-        large = float(worse.sum()) > LEAST * float(left[best.effect.key].sum())
-        if trial is best or (alike and not large) or not told_apart:
+        told_apart = float(worse.sum()) > TELLS_APART * scatter
+        if best.similarity[trial.effect.key] > ALIKE:
+            told_apart = told_apart and float(worse.sum()) > TELLS_ALIKE_APART * taken
+        else:
+            told_apart = told_apart or trial.gain < 0.9 * best.gain
+        if trial is best or not told_apart:
             members.append(trial)
     return sorted(members, key=lambda t: t is not best)

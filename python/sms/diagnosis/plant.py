@@ -44,6 +44,8 @@ from sms.io.rig import Rig
 
 LEFT = 0.2
 """Of the baseline's excess: with more left, the best explanation is none."""
+MOST_LEFT = 0.3
+"""Of the baseline's excess, however small that is: what leaves more was imitated, not explained."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,11 @@ def investigate(
     progress("looking which effects can be seen", 0.15)
     able, blind = testable(baseline, data, effects)
     before = excess_of(baseline, data)
+
+    def enough(fitted: Fitted) -> bool:
+        left = excess_of(fitted, data)
+        return small(left) and (fitted is baseline or left.total < MOST_LEFT * before.total)
+
     outcome = find_causes(
         baseline,
         data,
@@ -117,7 +124,7 @@ def investigate(
         float(np.mean(before.floor)),
         rng,
         progress,
-        lambda fitted: small(excess_of(fitted, data)),
+        enough,
     )
     after = excess_of(outcome.final, data)
     verdict = decide(outcome, before, after)
@@ -139,6 +146,8 @@ def decide(outcome: Outcome, before: Excess, after: Excess) -> Verdict:
         return "unknown"
     if not outcome.classes:
         return "no-evidence"
+    if after.total > MOST_LEFT * before.total:
+        return "unknown"
     if len(outcome.classes) > 1:
         return "combination"
     return "cause" if len(outcome.classes[0]) == 1 else "class"

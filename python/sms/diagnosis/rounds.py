@@ -90,7 +90,7 @@ def find_causes(
         progress(f"round {number}: {len(remaining)} effects", done)
         trials = try_effects(current, data, remaining, rng)
         judge(trials, current, data, yardstick, rng)
-        members = best_class(trials, data, rng)
+        members = best_class(trials, current, data, rng)
         rounds.append(Round(trials, members))
         if not members:
             break
