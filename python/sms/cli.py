@@ -70,6 +70,14 @@ def diagnose(
     seed: Annotated[
         int, typer.Option(help="Seed of the resampling; the same seed gives the same answer.")
     ] = 1,
+    empirical: Annotated[
+        bool,
+        typer.Option(
+            "--empirical",
+            help="Where the cause is unknown, carry the curve of what is missing along as an empirical term (not "
+            "explained), measure its gain on unseen records and write it to empirical.csv.",
+        ),
+    ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print diagnosis.json instead of the table.")
     ] = False,
@@ -90,7 +98,10 @@ def diagnose(
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("reading records", total=1.0)
         answer = run(
-            rig, seed, lambda text, done: progress.update(task, description=text, completed=done)
+            rig,
+            seed,
+            lambda text, done: progress.update(task, description=text, completed=done),
+            empirical,
         )
         progress.update(task, description="writing the report", completed=0.95)
         files = write_diagnosis(answer, rig, out)

@@ -10,7 +10,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from sms.diagnosis.result import Cause, Diagnosis, ParameterValue, Remainder
+from sms.diagnosis.result import Cause, Diagnosis, Gain, ParameterValue, Remainder
 from sms.diagnosis.words import arranged
 from sms.report.verdict import VERDICT_WORDS, is_shift, parameter_text
 from sms.units_display import (
@@ -33,6 +33,7 @@ def print_diagnosis(diagnosis: Diagnosis, console: Console) -> None:
         _faults(diagnosis),
         _causes(diagnosis),
         _gain(diagnosis),
+        _empirical(diagnosis),
         _notes(diagnosis),
     )
     console.print(Group(*(part for part in parts if part is not None)))
@@ -110,10 +111,33 @@ def _gain(diagnosis: Diagnosis) -> Padding | None:
         change = f"{format_percent(-g.reduction, signed=True)} ({within})"
         if not diagnosis.causes:
             texts[1] = change = "-"
-        name = (
-            g.record if len({x.signal for x in diagnosis.gain}) == 1 else f"{g.record}, {g.signal}"
-        )
-        table.add_row(name, *texts, change)
+        table.add_row(_record_of(g, diagnosis), *texts, change)
+    return _block(table)
+
+
+def _record_of(g: Gain, diagnosis: Diagnosis) -> str:
+    several = len({x.signal for x in diagnosis.gain}) > 1
+    tested = " (test)" if g.role == "test" else ""
+    return f"{g.record}{tested}, {g.signal}" if several else f"{g.record}{tested}"
+
+
+def _empirical(diagnosis: Diagnosis) -> Padding | None:
+    """What the curve of an unknown is worth, where it was asked for."""
+    if diagnosis.empirical is None:
+        return None
+    shape = diagnosis.empirical.shape
+    table = _table(
+        f"Not explained: {words(shape.equation)} as a curve over {words(shape.signal.split(' [')[0])}"
+    )
+    table.add_column("record")
+    table.add_column("baseline", justify="right", no_wrap=True)
+    table.add_column("with the curve", justify="right", no_wrap=True, style="bold")
+    table.add_column("change (95 %)", justify="right", no_wrap=True)
+    for g in diagnosis.empirical.gain:
+        within = format_interval(-g.reduction_high, -g.reduction_low, signed=True)
+        texts = format_aligned([g.baseline_rms, g.extended_rms], g.unit)
+        change = f"{format_percent(-g.reduction, signed=True)} ({within})"
+        table.add_row(_record_of(g, diagnosis), *texts, change)
     return _block(table)
 
 

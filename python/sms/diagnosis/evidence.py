@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
 from sms.diagnosis.prepare import Comparison, Motion, inputs_of, predict
 from sms.diagnosis.repeatability import Repeatability, arrangement
 from sms.diagnosis.result import (
+    Array,
     Candidate,
     Cause,
     Gain,
@@ -21,8 +22,9 @@ from sms.diagnosis.result import (
 )
 from sms.diagnosis.ripple import find_ripple
 from sms.diagnosis.rounds import Outcome, Round
+from sms.diagnosis.runs import Runs
 from sms.diagnosis.search import Trial
-from sms.diagnosis.statistics import interval, resampled, weighted_ms
+from sms.diagnosis.statistics import Index, interval, resampled, weighted_ms
 
 
 def value_of(fitted: Fitted, name: str, old: float, error: float | None = None) -> ParameterValue:
@@ -126,31 +128,71 @@ def record_by_record(fitted: Fitted, name: str, data: Data) -> list[RecordEstima
 def gains(
     baseline: Fitted, extended: Fitted, data: Data, floor: float, rng: np.random.Generator
 ) -> tuple[Gain, ...]:
-    """What the extension is worth on each validate record."""
+    """What the extension is worth on each record it has not seen."""
     out = []
-    assert isinstance(data.validate, Comparison)
-    for number, motion in enumerate(data.validate.motions):
-        part = data.validate.part(number)
-        b = residual_of(part, baseline.params) ** 2
-        e = residual_of(part, extended.params) ** 2
-        counts = resampled(part.record, part.block, rng)
-        reduction = 1.0 - np.sqrt(
-            weighted_ms(e, part.block, counts) / weighted_ms(b, part.block, counts)
-        )
-        rms_b, rms_e = float(np.sqrt(np.mean(b))), float(np.sqrt(np.mean(e)))
-        out.append(
-            Gain(
-                motion.name,
-                "rod_force",
-                "N",
-                rms_b,
-                rms_e,
-                floor,
-                1.0 - rms_e / rms_b,
-                *interval(reduction),
-            )
-        )
+    for comparison in (data.validate, data.test):
+        if not isinstance(comparison, Comparison):
+            continue
+        for number, motion in enumerate(comparison.motions):
+            part = comparison.part(number)
+            b = residual_of(part, baseline.params) ** 2
+            e = residual_of(part, extended.params) ** 2
+            counts = resampled(part.record, part.block, rng)
+            where = Where(motion.name, "rod_force", "N", motion.role)
+            out.append(gain_of(where, b, e, part.block, counts, floor))
     return tuple(out)
+
+
+@dataclass(frozen=True)
+class Where:
+    """Which record and signal a gain is of."""
+
+    record: str
+    signal: str
+    unit: str
+    role: str
+
+
+def gain_of(
+    where: Where,
+    before: Array,
+    after: Array,
+    block: Index,
+    counts: Array,
+    floor: float,
+    scale: float = 1.0,
+) -> Gain:
+    """From squared errors (rows,) of one record and signal, and resamples of its blocks; `scale` gives the unit."""
+    change = 1.0 - np.sqrt(
+        weighted_ms(after, block, counts) / np.maximum(weighted_ms(before, block, counts), 1e-300)
+    )
+    rms_b, rms_e = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
+    return Gain(
+        where.record,
+        where.signal,
+        where.unit,
+        rms_b * scale,
+        rms_e * scale,
+        floor * scale,
+        1.0 - rms_e / rms_b,
+        *interval(change),
+        where.role,
+    )
+
+
+def gains_on(
+    runs: Runs, before: Array, after: Array, floor: Array, rng: np.random.Generator
+) -> Iterator[Gain]:
+    """From residuals (rows,) without and with an extension."""
+    counts = resampled(runs.record, runs.block, rng)
+    for number, run in enumerate(runs.motions):
+        for c, channel in enumerate(runs.channels):
+            rows = (runs.record == number) & (runs.channel == c)
+            where = Where(run.name, channel, runs.kind.units[channel], run.role)
+            own = counts[:, np.unique(runs.block[rows])]
+            block = np.unique(runs.block[rows], return_inverse=True)[1]
+            lowest, noise = float(np.sqrt(floor[c])), runs.noise[channel]
+            yield gain_of(where, before[rows] ** 2, after[rows] ** 2, block, own, lowest, noise)
 
 
 def remainder_of(

@@ -1,10 +1,14 @@
-"""A diagnosis on disk: report.html, diagnosis.json and extended.toml, each there whole or not at all."""
+"""A diagnosis on disk: report.html, diagnosis.json and extended.toml, each there whole or not at all.
+
+The curve of an unknown goes to empirical.csv where it was asked for.
+"""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
 
+from sms.diagnosis.empirical import table_of
 from sms.diagnosis.report import report_html
 from sms.diagnosis.result import Diagnosis, as_json
 from sms.io.errors import InputError
@@ -25,14 +29,18 @@ def check_output_folder(out: Path) -> None:
 
 
 def write_diagnosis(diagnosis: Diagnosis, rig: Path, out: Path) -> tuple[Path, ...]:
-    """Write the three files into the folder `out`, made if need be. InputError if that cannot be done."""
+    """Write the files into the folder `out`, made if need be. InputError if that cannot be done."""
     extended, page, data = out / "extended.toml", out / "report.html", out / "diagnosis.json"
     text = as_json(diagnosis)
     html = report_html(diagnosis)
     write_extended_rig(rig, extended, extension_of(diagnosis), header_of(diagnosis))
     write_text_atomically(page, html)
     write_text_atomically(data, text)
-    return page, data, extended
+    if diagnosis.empirical is None:
+        return page, data, extended
+    curve = out / "empirical.csv"
+    write_text_atomically(curve, table_of(diagnosis.empirical))
+    return page, data, extended, curve
 
 
 def extension_of(diagnosis: Diagnosis) -> dict[str, Declaration]:

@@ -81,6 +81,8 @@ class Data:
     rig: Rig
     identify: Comparison | Runs
     validate: Comparison | Runs
+    test: Comparison | Runs | None = None
+    """Records on which gains are reported and nothing is decided."""
     unseen_of: dict[int, tuple[Fitted, Fitted]] = field(default_factory=dict, repr=False)
     """What `unseen` has worked out already."""
 
@@ -184,14 +186,18 @@ def unseen(fitted: Fitted, data: Data) -> Array:
 def refitted(fitted: Fitted, data: Data) -> Fitted:
     """The model on the validate records, its causes held."""
     if id(fitted) not in data.unseen_of:
-        h = fitted.hypothesis
-        held = {n for cause in h.causes for n in cause.parameters}
-        free = {n: bounds for n, bounds in h.free.items() if n not in held}
-        start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
-        known = {n: u for n, u in h.known.items() if n not in held}
-        there = fit(replace(h, start=start, free=free, known=known), data.validate, fitted.params)
-        data.unseen_of[id(fitted)] = (fitted, there)
+        data.unseen_of[id(fitted)] = (fitted, refitted_on(fitted, data.validate))
     return data.unseen_of[id(fitted)][1]
+
+
+def refitted_on(fitted: Fitted, comparison: Comparison | Runs) -> Fitted:
+    """The model on other records: what is known may move there too, its causes are held."""
+    h = fitted.hypothesis
+    held = {n for cause in h.causes for n in cause.parameters}
+    free = {n: bounds for n, bounds in h.free.items() if n not in held}
+    start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
+    known = {n: u for n, u in h.known.items() if n not in held}
+    return fit(replace(h, start=start, free=free, known=known), comparison, fitted.params)
 
 
 def footprints(fitted: Fitted, comparison: Comparison | Runs, names: list[str]) -> Array:

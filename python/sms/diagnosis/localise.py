@@ -61,11 +61,6 @@ def points(values: Array) -> Array:
 def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis]:
     """Every equation with every signal, less what the free parameters can undo."""
     q = nuisance.basis()
-
-    def off(columns: Array) -> Array:
-        full = nuisance.with_declared(columns)
-        return np.asarray(full - q @ (q.T @ full))
-
     hidden = runs.problem.hidden(params, KNOTS)
     found = []
     for signal, values in signals_of(runs).items():
@@ -73,18 +68,36 @@ def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis
         if np.ptp(at) == 0.0:
             continue
         functions = hats(values, at)
-        for number, (equation, unit) in enumerate(runs.kind.hidden.items()):
-            columns = _through_plant(
-                runs, hidden[:, number * KNOTS : (number + 1) * KNOTS], functions
-            )
-            found.append(Basis(equation, signal, off(columns), at, unit))
-        for c, channel in enumerate(runs.channels):
-            errors = functions * (runs.channel == c)[:, None] / runs.noise[channel]
-            unit = runs.kind.units[channel]
-            found.append(
-                Basis(f"reading of {channel}", signal, off(_free_of_start(runs, errors)), at, unit)
-            )
+        for equation, unit in equations_of(runs).items():
+            full = nuisance.with_declared(_columns(runs, hidden, equation, functions))
+            found.append(Basis(equation, signal, full - q @ (q.T @ full), at, unit))
     return found
+
+
+def equations_of(runs: Runs) -> dict[str, str]:
+    """Where a term may be missing -> its unit: the plant's equations, and the readings."""
+    readings = {f"reading of {channel}": runs.kind.units[channel] for channel in runs.channels}
+    return dict(runs.kind.hidden) | readings
+
+
+def _columns(runs: Runs, hidden: Array, equation: str, functions: Array) -> Array:
+    """(rows, pieces): footprint of a hidden term that follows functions (rows, pieces) of a signal."""
+    equations = list(runs.kind.hidden)
+    if equation in equations:
+        first = equations.index(equation) * KNOTS
+        return _through_plant(runs, hidden[:, first : first + KNOTS], functions)
+    channel = equation.removeprefix("reading of ")
+    here = runs.channel == runs.channels.index(channel)
+    return _free_of_start(runs, functions * here[:, None] / runs.noise[channel])
+
+
+def with_curve(runs: Runs, nuisance: Nuisance, params: _core.Params, shape: Shape) -> Array:
+    """(rows,): how the residual changes, to first order, when the simulation carries a curve as a term."""
+    functions = hats(signals_of(runs)[shape.signal], np.array(shape.at))
+    columns = _columns(runs, runs.problem.hidden(params, KNOTS), shape.equation, functions)
+    full = nuisance.with_declared(columns @ np.array(shape.value))
+    q = nuisance.basis()
+    return np.asarray((full - q @ (q.T @ full))[: len(columns)])
 
 
 def _through_plant(runs: Runs, hidden: Array, functions: Array) -> Array:

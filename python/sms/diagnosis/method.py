@@ -37,12 +37,15 @@ from sms.io.rig import Rig, load_rig
 
 
 def diagnose(
-    path: str | os.PathLike[str], seed: int = 1, progress: Progress = lambda text, done: None
+    path: str | os.PathLike[str],
+    seed: int = 1,
+    progress: Progress = lambda text, done: None,
+    empirical: bool = False,
 ) -> Diagnosis:
     """Find what the model of a rig gets wrong on its records, and why.
 
-    path is a rig file. The same seed gives the same answer. InputError if the rig file or a record
-    cannot be used.
+    path is a rig file. The same seed gives the same answer. empirical: where the verdict is unknown, measure what the
+    curve of the missing term is worth as an empirical one. InputError if the rig file or a record cannot be used.
     """
     if not _core.has_estimation:
         raise InputError(
@@ -52,6 +55,10 @@ def diagnose(
     rng = np.random.default_rng(seed)
     progress("reading records", 0.0)
     rig = load_rig(path)
+    if empirical and rig.kind == "cylinder":
+        raise InputError(
+            f"{rig.path}: a cylinder's force balance carries no empirical term; leave --empirical out"
+        )
     records, findings = read_and_check(rig)
     blank = blank_answer(rig, records, findings, seed)
     faults = [f for f in findings if f.severity == "error"]
@@ -59,7 +66,7 @@ def diagnose(
         return replace(blank, verdict="data-fault", sentence=words.data_fault(faults))
 
     if rig.kind != "cylinder":
-        return diagnose_plant(rig, records, blank, rng, progress)
+        return diagnose_plant(rig, records, blank, rng, progress, empirical)
 
     progress("fitting the baseline", 0.1)
     motions = [prepare(rig, record) for record in records]
@@ -111,6 +118,7 @@ def split(rig: Rig, motions: Sequence[Motion]) -> Data:
         rig,
         Comparison(tuple(with_role(motions, "identify"))),
         Comparison(tuple(with_role(motions, "validate"))),
+        Comparison(tuple(kept_out)) if (kept_out := with_role(motions, "test")) else None,
     )
     first = fit(baseline_hypothesis(data, catalogue()), data.identify)
 
@@ -122,7 +130,12 @@ def split(rig: Rig, motions: Sequence[Motion]) -> Data:
         noise = ground.without_repeats(residual_of(comparison, first.params))
         return replace(comparison, strokes_per_block=strokes_per_block(noise, record, stroke))
 
-    return replace(data, identify=in_blocks(data.identify), validate=in_blocks(data.validate))
+    return replace(
+        data,
+        identify=in_blocks(data.identify),
+        validate=in_blocks(data.validate),
+        test=None if data.test is None else in_blocks(data.test),
+    )
 
 
 # ---- the answer ----------------------------------------------------------------------------------

@@ -13,9 +13,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.diagnosis.catalogue import Effect, effects_of
-from sms.diagnosis.evidence import candidates_of, cause_from, value_of
+from sms.diagnosis.empirical import empirical_of
+from sms.diagnosis.evidence import candidates_of, cause_from, gains_on, value_of
 from sms.diagnosis.excess import LEAST, LEAST_OF_ONE, Excess, excess_of
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, nuisance_of, refitted
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    baseline_hypothesis,
+    fit,
+    nuisance_of,
+    refitted,
+    refitted_on,
+)
 from sms.diagnosis.kind import Kind, Run
 from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.localise import localise
@@ -36,7 +45,6 @@ from sms.diagnosis.rounds import Outcome, Progress, find_causes
 from sms.diagnosis.runs import Runs, make_run, noise_of
 from sms.diagnosis.screening import Nuisance, columns_of, project
 from sms.diagnosis.search import Trial
-from sms.diagnosis.statistics import interval, resampled, weighted_ms
 from sms.diagnosis.visible import testable
 from sms.io.errors import InputError
 from sms.io.records import Record
@@ -78,7 +86,8 @@ def split(rig: Rig, kind: Kind, runs: Sequence[Run], noise: dict[str, float]) ->
     def of(role: str) -> Runs:
         return Runs(rig, tuple(r for r in runs if r.role == role), noise, kind)
 
-    return Data(rig, of("identify"), of("validate"))
+    kept_out = of("test") if any(r.role == "test" for r in runs) else None
+    return Data(rig, of("identify"), of("validate"), kept_out)
 
 
 def diagnose_plant(
@@ -87,6 +96,7 @@ def diagnose_plant(
     blank: Diagnosis,
     rng: np.random.Generator,
     progress: Progress,
+    empirical: bool = False,
 ) -> Diagnosis:
     """From checked records to an answer. InputError for a kind of rig that cannot be simulated against records yet."""
     if rig.kind not in KINDS:
@@ -100,7 +110,7 @@ def diagnose_plant(
             'write controller = "recorded" and record valve_command'
         )
     case = investigate(make_data(rig, records), effects_of(rig), rng, progress)
-    return complete(blank, case, rng, progress)
+    return complete(blank, case, rng, progress, empirical)
 
 
 def investigate(
@@ -154,9 +164,13 @@ def decide(outcome: Outcome, before: Excess, after: Excess) -> Verdict:
 
 
 def complete(
-    blank: Diagnosis, case: Case, rng: np.random.Generator, progress: Progress
+    blank: Diagnosis,
+    case: Case,
+    rng: np.random.Generator,
+    progress: Progress,
+    empirical: bool = False,
 ) -> Diagnosis:
-    """The whole answer, in numbers and in words."""
+    """The whole answer, in numbers and in words; `empirical` asks for the curve of an unknown as a term."""
     data, baseline, outcome = case.data, case.baseline, case.outcome
     causes = tuple(_cause(members, case) for members in outcome.classes)
     final = outcome.final if outcome.named else baseline
@@ -164,6 +178,10 @@ def complete(
     hidden = case.where(rng)
     left = _hidden(final, data, case.after, rng) if causes else None
     gain = _gains(baseline, final, data, case.after.floor, rng)
+    curve = None
+    if empirical and case.verdict == "unknown":
+        progress("measuring what the curve of the unknown is worth", 0.88)
+        curve = empirical_of(baseline, data, hidden.shape, case.before.floor, rng)
     progress("choosing the next experiment", 0.9)
     plan = plan_next(
         case.verdict, [[m.effect for m in c] for c in outcome.classes], final, data, hidden
@@ -182,12 +200,13 @@ def complete(
         gain=gain,
         hidden=hidden,
         hidden_left=left,
+        empirical=curve,
         noise_floor={},
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
         next_experiment=plan,
         series=tuple(
             s
-            for part in (data.identify, data.validate)
+            for part in (data.identify, data.validate, data.test)
             if isinstance(part, Runs)
             for s in _series(part, baseline, final, data)
         ),
@@ -252,36 +271,14 @@ def _cause(members: list[Trial], case: Case) -> Cause:
 def _gains(
     baseline: Fitted, final: Fitted, data: Data, floor: Array, rng: np.random.Generator
 ) -> tuple[Gain, ...]:
-    """What the extension is worth on each validate record and signal, in the signal's unit."""
-    runs = data.validate
-    assert isinstance(runs, Runs)
-    before = refitted(baseline, data).fit.residual ** 2
-    after = refitted(final, data).fit.residual ** 2
-    counts = resampled(runs.record, runs.block, rng)
-    out = []
-    for number, run in enumerate(runs.motions):
-        for c, channel in enumerate(runs.channels):
-            rows = (runs.record == number) & (runs.channel == c)
-            b = np.where(rows, before, 0.0)
-            e = np.where(rows, after, 0.0)
-            change = 1.0 - np.sqrt(
-                weighted_ms(e, runs.block, counts)
-                / np.maximum(weighted_ms(b, runs.block, counts), 1e-300)
-            )
-            rms_b, rms_e = float(np.sqrt(before[rows].mean())), float(np.sqrt(after[rows].mean()))
-            noise = runs.noise[channel]
-            out.append(
-                Gain(
-                    run.name,
-                    channel,
-                    runs.kind.units[channel],
-                    rms_b * noise,
-                    rms_e * noise,
-                    float(np.sqrt(floor[c])) * noise,
-                    1.0 - rms_e / rms_b,
-                    *interval(change),
-                )
-            )
+    """What the extension is worth on each record it has not seen, and each signal, in the signal's unit."""
+    out: list[Gain] = []
+    assert isinstance(data.validate, Runs)
+    before, after = refitted(baseline, data), refitted(final, data)
+    out += gains_on(data.validate, before.fit.residual, after.fit.residual, floor, rng)
+    if isinstance(data.test, Runs):
+        before, after = (refitted_on(f, data.test) for f in (baseline, final))
+        out += gains_on(data.test, before.fit.residual, after.fit.residual, floor, rng)
     return tuple(out)
 
 
@@ -296,10 +293,12 @@ def _hidden(fitted: Fitted, data: Data, excess: Excess, rng: np.random.Generator
 
 def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Series]:
     """Measured and predicted curves, window by window from the best initial states."""
-    assert isinstance(data.validate, Runs)
-    unseen = part is data.validate
-    base = refitted(baseline, data).params if unseen else baseline.params
-    extended = refitted(final, data).params if unseen else final.params
+    if part is data.identify:
+        base, extended = baseline.params, final.params
+    elif part is data.validate:
+        base, extended = refitted(baseline, data).params, refitted(final, data).params
+    else:
+        base, extended = refitted_on(baseline, part).params, refitted_on(final, part).params
     errors = part.problem.errors(base), part.problem.errors(extended)
     out = []
     for number, run in enumerate(part.motions):

@@ -99,6 +99,8 @@ class Gain:
     """1 - extended_rms / baseline_rms, with its 95 percent interval over resampled strokes."""
     reduction_low: float
     reduction_high: float
+    role: str = "validate"
+    """Of the record: "validate", on which causes were judged, or "test", which took no part in any choice."""
 
 
 @dataclass(frozen=True)
@@ -159,6 +161,16 @@ class Hidden:
     def equation(self) -> str:
         """The equation that takes most."""
         return max(self.shares, key=lambda name: self.shares[name][0])
+
+
+@dataclass(frozen=True)
+class Empirical:
+    """The curve of a missing term carried along by the simulation: it predicts better, and explains nothing."""
+
+    shape: Shape
+    """Fitted on the identify records."""
+    gain: tuple[Gain, ...]
+    """What it is worth on records that it has not seen; `extended` is the simulation with the curve."""
 
 
 @dataclass(frozen=True)
@@ -233,6 +245,8 @@ class Diagnosis:
     """Where the baseline's error comes from, for rigs that are simulated."""
     hidden_left: Hidden | None = None
     """The same of what the extended model leaves."""
+    empirical: Empirical | None = None
+    """On request: the curve of what is not explained as a term of the simulation."""
     noise_floor: dict[str, float] = field(default_factory=dict)
     """"sample" and "stroke": rms of what differs from sample to sample and from stroke to stroke, N."""
     baseline: tuple[ParameterValue, ...] = ()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sms.diagnosis.result import Diagnosis, Hidden, Shape
 from sms.report.markup import Scale, bar, esc, section
+from sms.report.worth import gain_table
 from sms.units_display import axis_unit, capital, format_percent, words
 
 WIDTH, HEIGHT, MARGIN = 560, 220, 46
@@ -23,7 +24,22 @@ def origin(diagnosis: Diagnosis) -> str:
     left = diagnosis.hidden_left
     if diagnosis.causes and left is not None and left.shape.share > 0.05:
         body += _curve(left.shape, "Of what the extended model leaves")
-    return section("origin", "Where the error comes from", body, lead)
+    return section("origin", "Where the error comes from", body + _empirical(diagnosis), lead)
+
+
+def _empirical(diagnosis: Diagnosis) -> str:
+    """The curve as a term of the simulation, on request."""
+    if diagnosis.empirical is None:
+        return ""
+    shape = diagnosis.empirical.shape
+    text = (
+        f"Not explained: carried along as an empirical term in {words(shape.equation)} over "
+        f"{words(shape.signal.split(' [')[0])}, the curve above is worth this on records that it was not fitted to. It "
+        "predicts; it names no cause, and away from these records it may be wrong. Its numbers are in empirical.csv."
+    )
+    return (
+        f'<p id="empirical">{esc(text)}</p>{gain_table(diagnosis.empirical.gain, "With the curve")}'
+    )
 
 
 def _shares(hidden: Hidden) -> str:

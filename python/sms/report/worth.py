@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from sms.diagnosis.result import Diagnosis, Gain, Remainder
 from sms.diagnosis.words import ARRANGED
 from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch
@@ -24,6 +26,9 @@ _LEGEND = (
     ("extended", "Extended", "the same with the causes named here"),
     ("floor", "Noise floor", "what does not repeat from stroke to stroke: no model can explain it"),
 )
+
+
+TESTED = ' <span class="role">test: took no part in any choice</span>'
 
 
 def key(diagnosis: Diagnosis, *kinds: str) -> str:
@@ -53,19 +58,22 @@ def gain(diagnosis: Diagnosis) -> str:
     title = "What it is worth" if diagnosis.causes else "How far off the simulation is"
     if not diagnosis.gain:
         return section("worth", title, empty("No record was judged, so no gain is claimed."))
+    body = gain_table(diagnosis.gain, "Extended" if diagnosis.causes else "")
+    return section("worth", title, body)
+
+
+def gain_table(gains: Sequence[Gain], extended: str) -> str:
+    """Errors without and with an extension of that name, as bars; without one if it is empty."""
     tops: dict[str, float] = {}
-    for g in diagnosis.gain:
+    for g in gains:
         ends = Scale.over([0.0, tops.get(g.unit, 0.0), g.baseline_rms, *_interval(g)])
         tops[g.unit] = 1.02 * ends.high
-    rows = "".join(
-        _gain_rows(g, Scale(0.0, tops[g.unit]), bool(diagnosis.causes)) for g in diagnosis.gain
-    )
-    interval = "; whisker and brackets: 95 % interval" if diagnosis.causes else ""
-    body = (
+    rows = "".join(_gain_rows(g, Scale(0.0, tops[g.unit]), extended) for g in gains)
+    interval = "; whisker and brackets: 95 % interval" if extended else ""
+    return (
         '<table class="gain"><caption>RMS error on records that the fit has not seen'
         f"{interval}</caption>{rows}</table>"
     )
-    return section("worth", title, body)
 
 
 def _interval(g: Gain) -> tuple[float, float]:
@@ -76,13 +84,13 @@ def _interval(g: Gain) -> tuple[float, float]:
     )
 
 
-def _gain_rows(g: Gain, scale: Scale, extended: bool) -> str:
+def _gain_rows(g: Gain, scale: Scale, extended: str) -> str:
     bars: list[tuple[str, float, tuple[float, float] | None]] = [
         ("baseline", g.baseline_rms, None),
         ("extended", g.extended_rms, _interval(g)),
         ("floor", g.noise_floor, None),
     ]
-    names = {"baseline": "Baseline", "extended": "Extended", "floor": "Noise floor"}
+    names = {"baseline": "Baseline", "extended": extended, "floor": "Noise floor"}
     if not extended:
         del bars[1]
     texts = format_aligned([value for _, value, _ in bars], g.unit)
@@ -101,7 +109,7 @@ def _gain_rows(g: Gain, scale: Scale, extended: bool) -> str:
     )
     head = (
         f'<tr><th scope="rowgroup" colspan="3"><strong>{esc(g.record)}</strong>, '
-        f"{esc(words(g.signal))} {change}</th></tr>"
+        f"{esc(words(g.signal))}{TESTED if g.role == 'test' else ''} {change}</th></tr>"
     )
     return f"<tbody>{head}{lines}</tbody>"
 

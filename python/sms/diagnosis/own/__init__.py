@@ -8,7 +8,8 @@ engine      the same search and judgement as for the rigs of this project
 
 from sms.diagnosis.own.engine import diagnose_model, write_diagnosis
 from sms.diagnosis.own.model import Effect, Input, Model, Output, Parameter, State, Values
-from sms.diagnosis.own.records import Record, Role, read_record
+from sms.diagnosis.own.records import Record, read_record
+from sms.io.rig import Role
 
 __all__ = [
     "Effect",

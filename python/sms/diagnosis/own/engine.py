@@ -56,11 +56,12 @@ def diagnose_model(
     window: float,
     seed: int = 1,
     progress: Progress = lambda text, done: None,
+    empirical: bool = False,
 ) -> Diagnosis:
     """Find what a model gets wrong on its records, and why: the answer that `diagnose` gives for a rig file.
 
     window: s, how long it is simulated from one initial state; a few of the plant's own time constants, and a tenth of
-    a record or less, since windows are what judgements count. The same seed gives the same answer. InputError for
+    a record or less, since windows are what judgements count. seed and empirical as in `diagnose`. InputError for
     records that do not fit the model.
     """
     faults = check(model, records)
@@ -90,7 +91,7 @@ def diagnose_model(
         )
     effects = tuple(_effect_of(model, effect) for effect in model.effects)
     case = plant.investigate(data, effects, rng, progress)
-    return plant.complete(blank, case, rng, progress)
+    return plant.complete(blank, case, rng, progress, empirical)
 
 
 FEWEST = 6
