@@ -1,0 +1,1 @@
+"""What a user would do otherwise, on the same trials (see ../README.md)."""
