@@ -65,9 +65,10 @@ class Output {
   py::ssize_t width_;
 };
 
-// work(begin, end) over all rows, in blocks that as many threads as there are cores take one after the other. Large
-// blocks first: two threads that touch the same fresh page of memory would both have it cleared, and a page has two
-// megabytes. Small ones last, so that none waits long for another.
+// work(begin, end) over all rows, in blocks that as many threads as there are cores take one after the other. The caller
+// only waits: what `work` refers to lies on its stack, and a thread that writes its own variables beside it would take
+// the line of cache from all others, row by row. Large blocks first: two threads that touch the same fresh page of
+// memory would both have it cleared, and a page has two megabytes. Small ones last, so that none waits long for another.
 template <typename Work>
 void in_blocks(py::ssize_t rows, const Work& work) {
   constexpr py::ssize_t kSmallest = 4096, kRowsThatPay = 20000;
@@ -90,13 +91,12 @@ void in_blocks(py::ssize_t rows, const Work& work) {
       work(block.first, block.second);
     }
   };
-  std::vector<std::future<void>> others;
-  for (py::ssize_t i = 1; i < threads; ++i) {
-    others.push_back(std::async(std::launch::async, take));
+  std::vector<std::future<void>> workers;
+  for (py::ssize_t i = 0; i < threads; ++i) {
+    workers.push_back(std::async(std::launch::async, take));
   }
-  take();
-  for (std::future<void>& other : others) {
-    other.get();
+  for (std::future<void>& worker : workers) {
+    worker.get();
   }
 }
 

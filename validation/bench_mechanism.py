@@ -176,16 +176,19 @@ def batch_rows(compiled: Mapping[str, float]) -> Iterator[Row]:
     height = rng.uniform(0.4, 0.6, BATCH)
 
     def nanoseconds() -> float:
-        return fastest(lambda: sms.inverse_kinematics(roll, pitch, height), rounds=8) / BATCH * 1e9
+        return fastest(lambda: sms.inverse_kinematics(roll, pitch, height), rounds=1) / BATCH * 1e9
 
     loop = ("loop in C, one core", compiled["inverse kinematics, batch"])
-    with one_core():
-        one = nanoseconds()
+    one, all_cores = [], []
+    for _ in range(12):  # by turns: what else runs on the machine meets both
+        with one_core():
+            one.append(nanoseconds())
+        all_cores.append(nanoseconds())
     goal = Goal(ratio_at_least=1.0 / 1.3)
-    yield row("inverse kinematics, 1e6 from Python, one core", one, "ns", loop, goal)
-    cores = len(os.sched_getaffinity(0))
-    name = f"inverse kinematics, 1e6 from Python, {cores} cores"
-    yield row(name, nanoseconds(), "ns", ("from Python, one core", one), Goal(ratio_at_least=1.8))
+    yield row("inverse kinematics, 1e6 from Python, one core", min(one), "ns", loop, goal)
+    name = f"inverse kinematics, 1e6 from Python, {len(os.sched_getaffinity(0))} cores"
+    peer = ("from Python, one core", min(one))
+    yield row(name, min(all_cores), "ns", peer, Goal(ratio_at_least=1.8))
 
 
 @contextmanager
