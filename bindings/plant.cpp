@@ -128,7 +128,7 @@ class Simulation {
     const sms_status status =
         begin_simulation(initial, input, params_, control_of(control), compensated, electronics, tolerance, run_);
     if (status != SMS_OK) {
-      raise_status(status, "the simulation cannot begin: " + std::string(sms_status_string(status)));
+      raise_status(status, "the simulation cannot begin: " + why(status));
     }
     run_.fixed_step = step;
   }
@@ -162,6 +162,19 @@ class Simulation {
       }
     }
     return py::make_tuple(out.array(), int(status), done);
+  }
+
+  // What a status of advance() means for this plant, in words.
+  std::string why(sms_status status) const {
+    if (status != SMS_OUT_OF_RANGE) {
+      return sms_status_string(status);
+    }
+    if (run_.delay_periods >= sms::longest_delay()) {
+      return "command_delay and the tube's delay together are " + std::to_string(sms::longest_delay()) +
+             " control periods or more";
+    }
+    return "a piston goes so far into its end that a chamber has no volume left; dead_volume_lower and "
+           "dead_volume_upper say how much room is there, end_stop_stiffness how far the end gives way";
   }
 
   double time() const { return run_.run.time; }
@@ -234,6 +247,9 @@ template <typename Bound>
 void add_running(py::class_<Bound>& c) {
   c.def("advance", &Bound::advance, py::arg("setpoint"), py::arg("noise"), py::arg("load"),
         "(rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).")
+      .def(
+          "why", [](const Bound& bound, int status) { return bound.why(sms_status(status)); }, py::arg("status"),
+          "What a status of advance() means for this plant, in words.")
       .def_property_readonly("columns", &Bound::columns, "What each column of a row is.")
       .def_property_readonly("time", &Bound::time, "s, where the plant is.")
       .def_property_readonly("evaluations", &Bound::evaluations, "Of the plant's derivative, so far.")

@@ -38,7 +38,7 @@ def measurements(install_peers: bool) -> list[Row]:
         *bench_mechanism.motion_rows(compiled),
         *bench_simulators.simulation_rows(compiled["simulation step"] * 1e-3, install_peers),
         *bench_mechanism.batch_rows(compiled),
-        *bench_plant.plant_rows(compiled),
+        *bench_plant.plant_rows(compiled, install_peers),
         *bench_mechanism.instruction_rows(COMPILED, bench_mechanism.COUNTED + bench_plant.COUNTED),
     ]
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import json
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import sms
@@ -66,11 +67,11 @@ def simulation_rows(microseconds: float, install: bool) -> Iterator[Row]:
     expected = swung()
     for name, (ratio, tolerance) in SIMULATORS.items():
         goal = Goal(ratio_at_least=ratio)
-        python = _python_with(name, install)
+        python = python_with(name, install)
         if python is None:
             peer: tuple[str, float | None] = (f"{name} is not installed: --peers", None)
         else:
-            result = _ask(python, name, task)
+            result: Result = ask(python, name, task)
             difference = float(np.max(np.abs(np.array(result["q"]) - expected)))
             if not difference < tolerance:
                 raise AssertionError(f"{name} arrives {difference:.1e} away from the core")
@@ -78,7 +79,7 @@ def simulation_rows(microseconds: float, install: bool) -> Iterator[Row]:
         yield row("simulation step of 1 ms, RK4", microseconds, "us", peer, goal)
 
 
-def _python_with(module: str, install: bool) -> Path | None:
+def python_with(module: str, install: bool) -> Path | None:
     """The environment's Python when it has the module; installs it first when asked to."""
     python = FOLDER / "bin" / "python"
     if install:
@@ -107,7 +108,8 @@ def _has(python: Path, module: str) -> bool:
     return subprocess.run([python, "-c", code], check=False).returncode == 0
 
 
-def _ask(python: Path, name: str, task: Task) -> Result:
+def ask(python: Path, name: str, task: Mapping[str, object]) -> Any:
+    """What validation/simulators/with_NAME.py answers, run by the peers' Python."""
     asked = subprocess.run(
         [python, "-m", f"validation.simulators.with_{name}"],
         input=json.dumps(task),
@@ -116,5 +118,4 @@ def _ask(python: Path, name: str, task: Task) -> Result:
         text=True,
         cwd=ROOT,
     )
-    result: Result = json.loads(asked.stdout[asked.stdout.index("{") :])
-    return result
+    return json.loads(asked.stdout[asked.stdout.index("{") :])

@@ -362,6 +362,37 @@ TEST_CASE("never a pressure below zero, whatever the command does") {
   }
 }
 
+TEST_CASE("a piston that leaves a chamber no room stops the run, and the status says so") {
+  Params p;
+  p.dead_volume_lower = p.dead_volume_upper = 1e-6;  // 0.13 mm of stroke; the end gives way by 0.6 mm
+  const Bench bench = sms::make_bench(p, sms::published_laws());
+  for (const double command : {2.5, 7.5}) {
+    const auto s = simulation(bench, sms::PositionControl::open_loop, false, 1e-6);
+    const double noise = 0.0;
+    sms_status status = SMS_OK;
+    for (int k = 0; k < 600 && status == SMS_OK; ++k) {
+      REQUIRE(sms::take_sample(p, &command, &noise, *s) == SMS_OK);
+      status = sms::run_period(*s);
+    }
+    CHECK(status == SMS_OUT_OF_RANGE);
+    CHECK(s->run.state.actuator.lower.pressure > 0.0);
+    CHECK(s->run.state.actuator.upper.pressure > 0.0);
+  }
+}
+
+TEST_CASE("a step that ends with a period, however short, does not hold back the next") {
+  const Bench bench = sms::make_bench(Params(), sms::published_laws());
+  const auto s = simulation(bench, sms::PositionControl::pid, false, 1e-4);
+  const int periods = 1000;
+  for (int k = 0; k < periods; ++k) {
+    const double setpoint = 0.2 + 0.05 * std::sin(2e-3 * k), noise = 0.0;
+    REQUIRE(sms::take_sample(bench.params, &setpoint, &noise, *s) == SMS_OK);
+    REQUIRE(sms::run_period(*s) == SMS_OK);
+  }
+  MESSAGE(s->run.steps, " steps in ", periods, " periods");
+  CHECK(s->run.steps < 1.05 * periods);
+}
+
 TEST_CASE("a fixed load on a closed loop: the controller holds its setpoint") {
   Params p;
   p.proportional_gain = 20.0;

@@ -193,6 +193,17 @@ def closed_loop(
             y[:] = total
 
 
+def control_of(p: Params) -> tuple[float, float, float, float, float]:
+    """(gain, step, sharpness, offset, period) of the published controller."""
+    return (
+        float(p["proportional_gain"]),
+        float(p["dead_band_step"]),
+        float(p["dead_band_sharpness"]),
+        float(p["command_offset"]),
+        float(p["control_period"]),
+    )
+
+
 class NumbaPlatform:
     """Ready to run, everything that does not change looked up; the default parameters."""
 
@@ -200,13 +211,7 @@ class NumbaPlatform:
         p = Params()
         self.fixed = (numbers_of(p), PUBLISHED, valve_map("iso_0_4_mpa"), mechanism_from(p))
         self.start = start
-        self.control = (
-            float(p["proportional_gain"]),
-            float(p["dead_band_step"]),
-            float(p["dead_band_sharpness"]),
-            float(p["command_offset"]),
-            float(p["control_period"]),
-        )
+        self.control = control_of(p)
 
     def run(self, setpoint: Array, steps: int) -> Array:
         """Extensions at every sample, m, (n, 3), by `steps` steps in a period."""

@@ -129,21 +129,62 @@ ActuatorState<S> actuator_scale() {
   return {gas, gas, voltage, voltage, S(1e-3), S(4e5)};
 }
 
-// Functions of the state that change sign where the equations have a kink: the ends of the stroke, the reversal, the
-// valve's dead zone and its middle.
-constexpr int actuator_switch_count() { return 6; }
-
+// False where the piston has gone so far into an end that a chamber holds no air any more: less than a cubic millimetre,
+// whose pressure would change by its own size within microseconds.
 template <typename S>
-void actuator_switches(const Params<S>& p, const ActuatorState<S>& state, const S& extension, const S& velocity,
-                       S* value) {
-  const S first(valve_table_0_4_mpa<ValueOf<S>>().opening[0]);
-  const S opening = valve_opening(p, state.spool.value);
-  value[0] = extension;
-  value[1] = p.stroke - extension;
-  value[2] = velocity;
-  value[3] = opening;
-  value[4] = opening - first;
-  value[5] = opening + first;
+bool has_room(const ActuatorTerms<S>& t) {
+  return t.lower.volume > S(1e-9) && t.upper.volume > S(1e-9);
+}
+
+// ---- kinks ----
+
+// Functions of the state that change sign where the equations have a kink: the ends of the stroke, the reversal, the
+// valve's middle and the edges of its dead zone, and under eq. 6.2 the change from one branch of the friction to the
+// other.
+constexpr int actuator_switch_count() { return 8; }
+
+// The dead zone of a table ends at its first row, that of the classic law where the land uncovers its slot.
+template <typename S>
+void valve_switches(const Params<S>& p, ValveLaw law, const S& voltage, S* value) {
+  const S opening = valve_opening(p, voltage);
+  value[0] = opening;
+  if (law == ValveLaw::classic) {
+    const S spool = spool_cubic(p, S(5) + opening), overlap = S(0.5) * (p.land_width - p.port_width);
+    value[1] = spool - overlap;
+    value[2] = spool + overlap;
+  } else {
+    const S first(valve_table_0_4_mpa<ValueOf<S>>().opening[0]);
+    value[1] = opening - first;
+    value[2] = opening + first;
+  }
+}
+
+// What drives the piston beyond either branch of eq. 6.2, N. Slowing down, the friction is that branch and the
+// acceleration tells how far the drive is from it; held, it is the other way round.
+template <typename S>
+void branch_switches(const Params<S>& p, const Piston<S>& piston, const S& acceleration, const S& friction, S* value) {
+  const S direction = piston.velocity < S(0) ? S(-1) : S(1);
+  const S drive = friction + p.moving_mass * acceleration;
+  Piston<S> changing = piston;
+  changing.acceleration = -direction;
+  value[0] = direction * (drive - friction_two_branch(p, changing));
+  changing.acceleration = direction;
+  value[1] = direction * (drive - friction_two_branch(p, changing));
+}
+
+// After derivative(): `acceleration` is the piston's, m/s^2, `friction` its friction, N.
+template <typename S>
+void actuator_switches(const Params<S>& p, const ActuatorLaws& laws, const ActuatorState<S>& state,
+                       const Piston<S>& piston, const S& acceleration, const S& friction, S* value) {
+  value[0] = piston.extension;
+  value[1] = p.stroke - piston.extension;
+  value[2] = piston.velocity;
+  valve_switches<S>(p, laws.valve, state.spool.value, value + 3);
+  if (laws.friction == FrictionLaw::two_branch) {
+    branch_switches<S>(p, piston, acceleration, friction, value + 6);
+  } else {
+    value[6] = value[7] = S(1);
+  }
 }
 
 }  // namespace sms

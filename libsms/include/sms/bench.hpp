@@ -58,6 +58,9 @@ sms_status derivative(const Bench<S>& bench, const BenchState<S>& state, const B
                       BenchState<S>& rate) {
   const Params<S>& p = bench.params;
   fill_chambers(p, bench.laws, state.actuator, state.extension, state.velocity, t.actuator);
+  if (!has_room(t.actuator)) {
+    return SMS_OUT_OF_RANGE;
+  }
   const S drive = t.actuator.force - input.load_force;
   t.balance =
       force_balance<S>(p, bench.laws.friction, t.actuator.piston, state.actuator.deflection, p.moving_mass, drive);
@@ -92,9 +95,10 @@ BenchState<S> state_scale(const Bench<S>&) {
 }
 
 template <typename S>
-void switches(const Bench<S>& bench, const BenchState<S>& state, const BenchTerms<S>&,
+void switches(const Bench<S>& bench, const BenchState<S>& state, const BenchTerms<S>& t,
               S (&value)[actuator_switch_count()]) {
-  actuator_switches(bench.params, state.actuator, state.extension, state.velocity, value);
+  actuator_switches(bench.params, bench.laws, state.actuator, t.actuator.piston, t.balance.acceleration,
+                    t.balance.friction, value);
 }
 
 // What a plant is asked by whoever closes a loop around it.

@@ -17,8 +17,8 @@
 //
 // Kinks. Where the equations change their branch (the ends of the stroke, a reversal, the dead zone of the valve) no
 // smooth method keeps its order. A plant names functions of its state that change sign there (`switches`). A step over
-// such a place is shortened, by regula falsi on the step itself, until it ends there to within a thousandth of it; what
-// follows is a new step with new stages. A command that jumps is no kink: a step never passes the time it is told, and
+// such a place is taken again, shortened to where the straight line between both ends says it lies, which is so beside
+// it by the square of the step; what follows is a new step with new stages. A command that jumps is no kink: a step never passes the time it is told, and
 // renew_command() gives the first stage of the next from the last of this one.
 //
 // The plant is wrapped in a System:
@@ -97,7 +97,6 @@ template <typename State, typename System>
 sms_status attempt_step(System& f, const StepControl<State>& control, const Run<State>& run,
                         const typename State::Scalar& h, Attempt<State>& a) {
   using S = typename State::Scalar;
-  using std::abs;
   State k2, k3, k4;
   const auto x = vector_of(run.state);
   const auto k1 = vector_of(run.rate);
@@ -121,16 +120,9 @@ sms_status attempt_step(System& f, const StepControl<State>& control, const Run<
   if ((status = f(at, a.rate)) != SMS_OK) {
     return status;
   }
-  a.error = S(0);
-  const auto scale = vector_of(control.scale);
-  const auto last = vector_of(k4), fresh = vector_of(a.rate);
-  for (int i = 0; i < StateVector<State>::size; ++i) {
-    const S size = abs(end(i)) > scale(i) ? abs(end(i)) : scale(i);
-    const S error = h * abs(fresh(i) - last(i)) / (S(6) * control.tolerance * size);
-    if (!(error <= a.error)) {  // also a NaN
-      a.error = error;
-    }
-  }
+  const auto size = end.cwiseAbs().cwiseMax(vector_of(control.scale));
+  const auto change = (vector_of(a.rate) - vector_of(k4)).cwiseAbs();
+  a.error = h / (S(6) * control.tolerance) * change.cwiseQuotient(size).template maxCoeff<Eigen::PropagateNaN>();
   return SMS_OK;
 }
 
@@ -174,8 +166,8 @@ void accept_step(const Attempt<State>& a, const typename State::Scalar& end, Run
   ++run.steps;
 }
 
-// One accepted step that does not pass `end`. SMS_NOT_CONVERGED: it would have to be smaller than control.smallest; the
-// run stands where it was.
+// One accepted step that does not pass `end`. Where it would have to be smaller than control.smallest: what the
+// derivative said ahead, else SMS_NOT_CONVERGED; the run stands where it was.
 template <typename State, typename System>
 sms_status adaptive_step(System& f, const StepControl<State>& control, const typename State::Scalar& end,
                          Run<State>& run) {
@@ -187,6 +179,7 @@ sms_status adaptive_step(System& f, const StepControl<State>& control, const typ
   Attempt<State> a;
   S h = run.next < control.largest ? run.next : control.largest;
   bool shortened = false;  // by a switch: the size says nothing about the next
+  sms_status ahead = SMS_NOT_CONVERGED;
   for (;;) {
     const bool whole = run.time + h * (S(1) + S(1e-6)) >= end;
     h = whole ? end - run.time : h;
@@ -205,18 +198,21 @@ sms_status adaptive_step(System& f, const StepControl<State>& control, const typ
       if (!shortened) {
         const S grow = S(0.9) * pow(error, S(-0.18)) * pow(run.last_error, S(0.1));
         const S wanted = h * (grow < S(0.2) ? S(0.2) : (grow > S(5) ? S(5) : grow));
-        run.next = whole && wanted < run.next ? run.next : wanted;
-        run.last_error = error;
+        if (!whole || wanted > run.next) {  // what is left before `end` may be short, and says nothing
+          run.next = wanted;
+          run.last_error = error;
+        }
       }
       accept_step<State>(a, whole ? end : run.time + h, run);
       return SMS_OK;
     }
     ++run.rejected;
+    ahead = status == SMS_OK ? ahead : status;
     const S shrink = status == SMS_OK && a.error < S(1e6) ? S(0.9) * pow(a.error, S(-0.25)) : S(0.1);
     h *= shrink > S(0.1) ? shrink : S(0.1);
     run.next = h;
     if (h < control.smallest) {
-      return status == SMS_OK ? SMS_NOT_CONVERGED : status;
+      return ahead;
     }
   }
 }

@@ -83,6 +83,7 @@ template <typename V>
 struct PlanSolution {
   Vec3<V> x_y_yaw;
   Mat3<V> inverse_slope;
+  V last_step;  // largest component, rad or m
 };
 
 template <typename V>
@@ -94,6 +95,7 @@ sms_status solve_plan(const PlanRods<V>& rods, PlanSolution<V>& solution, int& i
     const Vec3<V> step = solution.inverse_slope * error.excess;
     const V largest = step.cwiseAbs().maxCoeff();
     solution.x_y_yaw -= damping(largest) * step;
+    solution.last_step = largest;
     ++iterations;
     if (!(abs(solution.x_y_yaw(2)) <= largest_angle<V>())) {
       return SMS_OUT_OF_WORKSPACE;
@@ -107,6 +109,9 @@ sms_status solve_plan(const PlanRods<V>& rods, PlanSolution<V>& solution, int& i
 
 template <typename V>
 Vec3<V> last_step_of_plan(const PlanRods<V>& rods, const PlanRods<V>& /*the same*/, const PlanSolution<V>& solution) {
+  if (solution.last_step < negligible_step<V>()) {
+    return solution.x_y_yaw;
+  }
   return solution.x_y_yaw - solution.inverse_slope * plan_error(rods, solution.x_y_yaw).excess;
 }
 

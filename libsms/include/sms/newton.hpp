@@ -37,6 +37,12 @@ constexpr V close_step() {
   return std::numeric_limits<V>::digits > 24 ? V(2e-6) : V(2e-3);
 }
 
+// The square of such a step is below rounding: nothing is left to do.
+template <typename V>
+constexpr V negligible_step() {
+  return std::numeric_limits<V>::digits > 24 ? V(1e-8) : V(1e-4);
+}
+
 // Factor that brings the largest of a step's components down to largest_step.
 template <typename V>
 V damping(const V& largest_component) {

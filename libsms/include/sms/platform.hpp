@@ -148,6 +148,9 @@ sms_status derivative(const Platform<S>& platform, const PlatformState<S>& state
   for (int i = 0; i < 3; ++i) {
     fill_chambers<S>(platform.params[i], platform.laws, state.actuator[i], t.extension(i),
                      t.dynamics.motion.extension_rate(i), t.actuator[i]);
+    if (!has_room(t.actuator[i])) {
+      return SMS_OUT_OF_RANGE;
+    }
     force(i) = t.actuator[i].force;
     actuator_rates<S>(platform.params[i], platform.laws, state.actuator[i], input.command(i), t.actuator[i],
                       rate.actuator[i]);
@@ -204,13 +207,13 @@ PlatformState<S> state_scale(const Platform<S>&) {
   return {Vec3<S>(S(0.2), S(0.2), S(0.4)), Vec3<S>(S(0.5), S(0.5), S(0.5)), {actuator, actuator, actuator}};
 }
 
-// After derivative() at this state: extension and velocity are its terms.
+// After derivative() at this state: what the pistons do is in its terms.
 template <typename S>
 void switches(const Platform<S>& platform, const PlatformState<S>& state, const PlatformTerms<S>& t,
               S (&value)[3 * actuator_switch_count()]) {
   for (int i = 0; i < 3; ++i) {
-    actuator_switches<S>(platform.params[i], state.actuator[i], t.extension(i), t.dynamics.motion.extension_rate(i),
-                         value + i * actuator_switch_count());
+    actuator_switches<S>(platform.params[i], platform.laws, state.actuator[i], t.actuator[i].piston, t.along(i),
+                         t.friction(i), value + i * actuator_switch_count());
   }
 }
 
