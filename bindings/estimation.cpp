@@ -5,6 +5,7 @@
 #include "choice.hpp"
 #include "estimation/cylinder.hpp"
 #include "estimation/fit.hpp"
+#include "estimation/spool.hpp"
 #include "estimation/tank.hpp"
 #include "laws.hpp"
 #include "shooting_problem.hpp"
@@ -71,6 +72,26 @@ std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const est::Problem& problem,
   return {residual, jacobian};
 }
 
+// ---- spool ----
+
+est::SpoolRecord make_spool_record(double step, Eigen::VectorXd command, Eigen::VectorXd position) {
+  return {step, std::move(command), std::move(position)};
+}
+
+void bind_spool(py::module_& m) {
+  py::class_<est::SpoolRecord>(m, "SpoolRecord", "Command and measured spool position, evenly sampled; (n,), SI.")
+      .def(py::init(&make_spool_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("position"))
+      .def_property_readonly("first_compared", &est::SpoolProblem::first_compared,
+                             "Sample from which on positions are compared; before it the spool is run up.");
+  py::class_<est::SpoolProblem, est::Problem>(m, "SpoolProblem", "Predicted less measured spool position, m.")
+      .def(py::init([](std::vector<est::SpoolRecord> records, const std::string& law) {
+             return est::SpoolProblem(std::move(records), choice<est::SpoolLaw>("law", law,
+                                                                                {{"cubic", est::SpoolLaw::cubic},
+                                                                                 {"linear", est::SpoolLaw::linear}}));
+           }),
+           py::arg("records"), py::arg("law") = "cubic", "law: cubic (eq. 4.1) or linear (eq. 4.2).");
+}
+
 }  // namespace
 
 void bind_estimation(py::module_& m) {
@@ -102,6 +123,7 @@ void bind_estimation(py::module_& m) {
       .def_property_readonly("step", &est::TankProblem::step, "s, of the integration");
 
   bind_plant_problems(m);
+  bind_spool(m);
 
   py::class_<est::Fit>(m, "Fit", "The result of a least-squares fit.")
       .def_readonly("params", &est::Fit::params)

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sms.identification.friction import EQUATION, FrictionResult, identify_friction
+from sms.identification.friction import FrictionResult, identify_friction
+from sms.identification.friction_fit import EQUATION
 
 RIGS = ("cylinder_o_ring", "cylinder_kdn", "cylinder_o_ring_rerun1", "cylinder_o_ring_rerun3")
 LAW = "stribeck"

@@ -16,7 +16,8 @@
 // r itself is e at the best z found, not its projection: where friction has a kink the search may end at a point from
 // which the linearised model promises more than there is.
 //
-// A search begins where that of the last Jacobian ended.
+// A search begins where that of the last Jacobian ended; with a Jacobian, a window that is left badly off is searched
+// from its guess as well.
 //
 // So a residual and its Jacobian are those of the parameters alone, windows are independent of each other, and a window
 // is the natural block of whatever is resampled.
@@ -88,7 +89,7 @@ class ShootingProblem : public Problem {
       jacobian->resize(rows_, static_cast<Eigen::Index>(free.size()));
     }
     in_parallel([&](std::size_t k) {
-      const Shot shot = shoot(params, windows_[k]);
+      const Shot shot = jacobian != nullptr ? search(params, windows_[k]) : shoot(params, windows_[k]);
       residual->segment(windows_[k].row, windows_[k].rows) = shot.residual;
       if (jacobian != nullptr) {
         differentiate(params, free, windows_[k], shot, jacobian);
@@ -107,7 +108,7 @@ class ShootingProblem : public Problem {
 
   // The best initial states at `params` become where later searches begin.
   void settle(const Params<double>& params) {
-    in_parallel([&](std::size_t k) { windows_[k].start = shoot(params, windows_[k]).start; });
+    in_parallel([&](std::size_t k) { windows_[k].start = search(params, windows_[k]).start; });
   }
 
   // Derivatives of the projected residuals against inputs that are hidden in the plant's equations: each of
@@ -221,6 +222,19 @@ class ShootingProblem : public Problem {
     qr.setThreshold(1e-9);
     qr.compute(scaled);
     shot.basis = qr.householderQ() * Eigen::MatrixXd::Identity(w.rows, qr.rank());
+    return shot;
+  }
+
+  // The better of two searches. One that begins where parameters far away have left it may end in a valley of its own,
+  // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too.
+  Shot search(const Params<double>& params, const Window& w) const {
+    Shot shot = shoot(params, w);
+    if (shot.residual.squaredNorm() > 4.0 * w.rows) {
+      Window anew = w;
+      anew.start = plant_.guess(w.record, w.first);
+      Shot other = shoot(params, anew);
+      return other.residual.squaredNorm() < shot.residual.squaredNorm() ? other : shot;
+    }
     return shot;
   }
 

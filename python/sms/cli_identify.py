@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
+
+if TYPE_CHECKING:
+    from sms.io.rig import Declaration
 
 RigFile = Annotated[
     Path,
@@ -106,26 +109,99 @@ def friction(rig: RigFile, out: Out = Path("friction"), as_json: AsJson = False)
     from sms.diagnosis.files import check_output_folder  # noqa: PLC0415 (scipy takes a second)
     from sms.identification import friction_result  # noqa: PLC0415
     from sms.identification.friction import identify_friction  # noqa: PLC0415
-    from sms.identification.output import json_text  # noqa: PLC0415
-    from sms.io import write_extended_rig  # noqa: PLC0415
     from sms.report.friction import friction_html  # noqa: PLC0415
 
     check_output_folder(out)
     with _progress("reading records") as update:
         result = identify_friction(rig, update)
         page = friction_html(result)
-    text = json_text(friction_result.to_dict(result))
-    header = "\n".join(
-        ["Friction identified by sms identify friction.", *friction_result.sentences(result)]
+    _deliver(
+        "friction",
+        rig,
+        out,
+        page,
+        friction_result.sentences(result),
+        friction_result.declarations(result),
+        friction_result.to_dict(result),
+        as_json,
     )
-    write_extended_rig(rig, out / "friction.toml", friction_result.declarations(result), header)
-    files = _write(out, {"friction.json": text, "report.html": page})
-    if as_json:
-        print(text, end="")
-        return
-    for sentence in friction_result.sentences(result):
-        print(f"- {sentence}")
-    print(f"written: {', '.join(str(f) for f in (out / 'friction.toml', *files))}")
+
+
+@identify.command(
+    epilog="Example: **sms identify actuator bench.toml --out actuator** writes actuator/actuator.toml (the rig file "
+    "with what was identified; every other command reads it), actuator/actuator.json (covariance, gain, diagnostics) "
+    "and actuator/report.html."
+)
+def actuator(
+    rig: RigFile,
+    out: Out = Path("actuator"),
+    huber: Huber = 0.0,
+    starts: Annotated[
+        int,
+        typer.Option(help="Starting points; the second and later ones are drawn.", min=1, max=50),
+    ] = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Mass, dead volumes, mass-flow gain, heat ratios and friction of an actuator, together.
+
+    The rig is of kind *bench*. Its records are predicted from the command in windows of a second, each from an initial
+    state of its own, and all parameters are fitted at once to extension and pressures. What the rig file knows within
+    limits is fitted within them; what the records cannot tell is named and stays as declared. Records with role
+    *validate* are not used for the fit: on them the result is judged.
+    """
+    from sms.diagnosis.files import check_output_folder  # noqa: PLC0415 (scipy takes a second)
+    from sms.identification import bench_result  # noqa: PLC0415
+    from sms.identification.actuator import identify_actuator  # noqa: PLC0415
+    from sms.report.actuator import actuator_html  # noqa: PLC0415
+
+    check_output_folder(out)
+    with _progress("reading records") as update:
+        result = identify_actuator(rig, huber, starts, update)
+        page = actuator_html(result)
+    _deliver(
+        "actuator",
+        rig,
+        out,
+        page,
+        bench_result.sentences(result),
+        bench_result.declarations(result),
+        bench_result.to_dict(result),
+        as_json,
+    )
+
+
+@identify.command(
+    epilog="Example: **sms identify spool valve.toml --out spool** writes spool/spool.toml (the rig file with what was "
+    "identified), spool/spool.json and spool/report.html."
+)
+def spool(
+    rig: RigFile, out: Out = Path("spool"), huber: Huber = 0.0, as_json: AsJson = False
+) -> None:
+    """The valve's spool: static law, natural frequency, damping, dead time; centre and dead band.
+
+    Position is used where it was measured: a rig of kind *spool_test* (valve_command, spool_position), or *bench* with
+    that column. On a bench pressures say at which command the valve is closed, how wide its dead band is, and how it
+    lags. What is missing, and what that prevents, is said.
+    """
+    from sms.diagnosis.files import check_output_folder  # noqa: PLC0415 (scipy takes a second)
+    from sms.identification import spool_result  # noqa: PLC0415
+    from sms.identification.spool import identify_spool  # noqa: PLC0415
+    from sms.report.spool import spool_html  # noqa: PLC0415
+
+    check_output_folder(out)
+    with _progress("reading records") as update:
+        result = identify_spool(rig, huber, update)
+        page = spool_html(result)
+    _deliver(
+        "spool",
+        rig,
+        out,
+        page,
+        spool_result.sentences(result),
+        spool_result.declarations(result),
+        spool_result.to_dict(result),
+        as_json,
+    )
 
 
 # ---- shared ------------------------------------------------------------------------------------------------
@@ -138,6 +214,32 @@ def _progress(first: str) -> Iterator[Any]:
     with Progress(*columns, console=Console(file=sys.stderr), transient=True) as progress:
         task = progress.add_task(first, total=1.0)
         yield lambda text, done: progress.update(task, description=text, completed=done)
+
+
+def _deliver(
+    subject: str,
+    rig: Path,
+    out: Path,
+    page: str,
+    sentences: Sequence[str],
+    declarations: Mapping[str, Declaration],
+    answer: Mapping[str, Any],
+    as_json: bool,
+) -> None:
+    """The rig file with what was found, the JSON and the page; then the sentences, or the JSON, on the terminal."""
+    from sms.identification.output import json_text  # noqa: PLC0415
+    from sms.io import write_extended_rig  # noqa: PLC0415
+
+    text = json_text(dict(answer))
+    header = "\n".join([f"Identified by sms identify {subject}.", *sentences])
+    write_extended_rig(rig, out / f"{subject}.toml", declarations, header)
+    files = _write(out, {f"{subject}.json": text, "report.html": page})
+    if as_json:
+        print(text, end="")
+        return
+    for sentence in sentences:
+        print(f"- {sentence}")
+    print(f"written: {', '.join(str(f) for f in (out / f'{subject}.toml', *files))}")
 
 
 def _write(out: Path, texts: dict[str, str]) -> Sequence[Path]:

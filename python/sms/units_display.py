@@ -52,6 +52,7 @@ _SCALES: Mapping[str, tuple[tuple[float, DisplayUnit], ...]] = MappingProxyType(
         "kg/s": ((0.0, DisplayUnit("g/s", 1e3)),),
         "m^2": ((0.0, DisplayUnit("mm²", 1e6)),),
         "m^3/(s V)": ((0.0, DisplayUnit("ml/s per V", 1e6)),),
+        "m^3": ((1e-3, DisplayUnit("l", 1e3)), (0.0, DisplayUnit("cm³", 1e6))),
         "m^3/(s Pa)": ((0.0, DisplayUnit("l/s per bar", 1e8)),),
         "1": ((0.0, DisplayUnit("", 1.0)),),
     }

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sms.identification.friction import collinearity, identify_friction
+from sms.identification.friction import identify_friction
+from sms.identification.friction_fit import collinearity
 from sms.identification.friction_result import declarations, sentences
 from sms.io import InputError
 from test_cli_diagnose import sms as command

@@ -90,7 +90,13 @@ def simulate(
     }
 
 
-def draw(out: Path, seed: int, runs: tuple[Run, ...] = RUNS, scatter: float = 0.03) -> Path:
+def draw(
+    out: Path,
+    seed: int,
+    runs: tuple[Run, ...] = RUNS,
+    scatter: float = 0.03,
+    rate: float = 1000.0,
+) -> Path:
     """Write records and rig file; friction differs by `scatter` (relative sd) from run to run."""
     from sms.io import write_record  # noqa: PLC0415 (the generator itself needs nothing of it)
 
@@ -104,7 +110,7 @@ def draw(out: Path, seed: int, runs: tuple[Run, ...] = RUNS, scatter: float = 0.
     for number, run in enumerate(runs, 1):
         factor = 1.0 + scatter * rng.standard_normal(2)
         friction = Friction(coulomb=38.0 * factor[0], viscous=530.0 * factor[1])
-        write_record(out / f"run_{number}.csv.gz", simulate(run, friction, rng))
+        write_record(out / f"run_{number}.csv.gz", simulate(run, friction, rng, rate))
         text += f'\n[[records]]\nfile = "run_{number}.csv.gz"\nrole = "{run.role}"\n'
     path = out / "rig.toml"
     path.write_text(text)

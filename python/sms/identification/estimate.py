@@ -57,19 +57,26 @@ class Estimate:
     """(k, k); rows and columns of a parameter at its bound, or without effect there, are nan."""
     inflation: Array
     """(k,): variance with coloured residuals over that with white ones."""
-    scale: float
-    """Root mean square of a weighted residual: 1 when the weights are the noise's."""
-    colour: Colour
+    variance: float
+    """Of a weighted residual: 1 when the weights are the noise's."""
+    colours: tuple[Colour, ...]
+    """The memory of the residual, one a series."""
     residual: Array
     jacobian: Array
     cost: float
     condition: float
+    """With what is known before; large: some parameters are one."""
     at_bound: tuple[bool, ...]
     converged: bool
     iterations: int
     starts: int = 1
     minima: int = 1
     """Distinct minima that the starts ended in."""
+
+    @property
+    def scale(self) -> float:
+        """Root mean square of a weighted residual."""
+        return float(np.sqrt(self.variance))
 
     def index(self, name: str) -> int:
         """Where a parameter stands in the arrays."""
@@ -95,8 +102,8 @@ class Estimate:
                 said.append(f"{f.name} ended at its bound, {value:g}: no estimate")
         if self.condition > BAD_CONDITION:
             said.append(
-                f"condition number {self.condition:.2g}: some parameters are nearly one to this "
-                "record; see the correlation map"
+                f"condition number {self.condition:.2g}: some parameters are nearly one to these "
+                "records; see the correlation map"
             )
         if not self.converged:
             said.append(f"the fit did not converge in {self.iterations} steps")
@@ -110,6 +117,10 @@ def estimate(
     weight: Array,
     counted: NDArray[np.bool_] | None = None,
     huber: float = 0.0,
+    series: Sequence[NDArray[np.intp]] = (),
+    states: int = 0,
+    tolerance: float = 1e-8,
+    last_steps: int = 0,
 ) -> Estimate:
     """Fit `free` to a problem from each of `starts` and keep the best.
 
@@ -120,23 +131,38 @@ def estimate(
         weight: (rows,), 1 over the standard deviation of a row.
         counted: (rows,), the rows that the noise is judged on; by default all.
         huber: weighted residuals beyond it count with their size; 0: least squares.
+        series: the rows of each signal, in time; every one has a noise of its own. Empty: all rows are one.
+        states: how many numbers the problem fits inside, initial states and the like.
+        tolerance: relative, on cost and on parameters.
+        last_steps: Gauss-Newton steps at the end that compare no costs. Where a problem searches for initial states
+            up to a threshold, its cost is known to that only, and a comparison of costs ends too early.
 
     Raises: ValueError for a start outside its bounds or a parameter that the records do not feel.
     """
     bounds = [(f.name, f.lower, f.upper, 1.0 / f.known_to if f.known_to else 0.0) for f in free]
     fits = [
-        _core.fit(problem, start, bounds, weight, tolerance=1e-8, huber=huber) for start in starts
+        _core.fit(problem, start, bounds, weight, tolerance=tolerance, huber=huber)
+        for start in starts
     ]
-    best = min(fits, key=lambda fit: fit.cost)
+    lowest = min(fits, key=lambda fit: fit.cost)
+    best = _Solution.of(lowest)
+    for _ in range(last_steps):
+        best = _last_step(problem, best, starts[0], free, weight, huber)
     jacobian = best.jacobian * weight[:, None]
     weighted = best.residual * weight
-    judged = weighted if counted is None else weighted[counted]
     if huber > 0.0:
-        judged = np.clip(judged, -huber, huber)
-    colour = colour_of(judged, len(free))
-    covariance, inflation = _covariance(jacobian, free, best.at_bound, colour)
-    level = LIMIT_95 * max(colour.variance, 1e-300)
-    higher = {round(fit.cost / level) for fit in fits if fit.cost > best.cost + level}
+        weighted = np.clip(weighted, -huber, huber)
+    every = series or (np.arange(weighted.size),)
+    spent = (len(free) + states) // len(every)
+    of_series = [rows if counted is None else rows[counted[rows]] for rows in every]
+    colours = [colour_of(weighted[rows], spent) for rows in of_series]
+    covariance, inflation = _covariance(
+        jacobian, free, best.at_bound, list(zip(every, colours, strict=True))
+    )
+    sizes = np.array([rows.size for rows in of_series])
+    variance = float(np.average([c.variance for c in colours], weights=sizes))
+    level = LIMIT_95 * max(variance, 1e-300)
+    higher = {round(fit.cost / level) for fit in fits if fit.cost > lowest.cost + level}
     return Estimate(
         problem=problem,
         start=starts[0],
@@ -147,22 +173,80 @@ def estimate(
         value=np.array([best.params[f.name] for f in free]),
         covariance=covariance,
         inflation=inflation,
-        scale=float(np.sqrt(colour.variance)),
-        colour=colour,
+        variance=variance,
+        colours=tuple(colours),
         residual=best.residual,
         jacobian=best.jacobian,
-        cost=best.cost,
-        condition=best.condition,
+        cost=lowest.cost,
+        condition=_condition(jacobian, free),
         at_bound=tuple(best.at_bound),
-        converged=best.converged,
-        iterations=best.iterations,
+        converged=lowest.converged,
+        iterations=lowest.iterations,
         starts=len(fits),
         minima=1 + len(higher),
     )
 
 
+@dataclass(frozen=True)
+class _Solution:
+    """Where a fit stands; arrays as those of Fit."""
+
+    params: _core.Params
+    residual: Array
+    jacobian: Array
+    at_bound: tuple[bool, ...]
+
+    @classmethod
+    def of(cls, fit: _core.Fit) -> _Solution:
+        return cls(fit.params, fit.residual, fit.jacobian, tuple(fit.at_bound))
+
+
+def _last_step(
+    problem: _core.Problem,
+    at: _Solution,
+    start: _core.Params,
+    free: Sequence[Free],
+    weight: Array,
+    huber: float,
+) -> _Solution:
+    """One Gauss-Newton step within the bounds; none where it would lead far, beyond four standard deviations."""
+    inside = np.flatnonzero(~np.array(at.at_bound))
+    if inside.size == 0:
+        return at
+    moved = [free[int(i)] for i in inside]
+    pull = np.array([1.0 / f.known_to if f.known_to else 0.0 for f in moved])
+    off = np.array([at.params[f.name] - start[f.name] for f in moved])
+    r = at.residual * weight
+    soft = np.sqrt(huber / np.maximum(np.abs(r), huber)) if huber > 0.0 else np.ones(r.size)
+    j = np.vstack([at.jacobian[:, inside] * (weight * soft)[:, None], np.diag(pull)])
+    length = np.maximum(np.linalg.norm(j, axis=0), 1e-300)
+    bread = np.linalg.pinv((j / length).T @ (j / length), rcond=1e-14, hermitian=True)
+    step = -bread @ ((j / length).T @ np.concatenate([r * soft, pull * off]))
+    if np.max(np.abs(step) / np.sqrt(np.maximum(np.diag(bread), 1e-300))) > 4.0:
+        return at
+    params = at.params.copy()
+    for f, change in zip(moved, step / length, strict=True):
+        params[f.name] = float(np.clip(params[f.name] + change, f.lower, f.upper))
+    residual, jacobian = problem.evaluate(params, [f.name for f in free])
+    return _Solution(params, residual, jacobian, at.at_bound)
+
+
+def _condition(jacobian: Array, free: Sequence[Free]) -> float:
+    """Of columns of length one, with what is known before as further rows; 1 for one parameter."""
+    known = np.array([1.0 / f.known_to**2 if f.known_to else 0.0 for f in free])
+    normal = jacobian.T @ jacobian + np.diag(known)
+    length = np.sqrt(np.diag(normal))
+    inside = length > 0.0
+    scaled = normal[np.ix_(inside, inside)] / np.outer(length[inside], length[inside])
+    values = np.linalg.eigvalsh(scaled) if inside.any() else np.ones(1)
+    return float(np.sqrt(values[-1] / max(values[0], 1e-16)))
+
+
 def _covariance(
-    jacobian: Array, free: Sequence[Free], at_bound: Sequence[bool], colour: Colour
+    jacobian: Array,
+    free: Sequence[Free],
+    at_bound: Sequence[bool],
+    series: Sequence[tuple[NDArray[np.intp], Colour]],
 ) -> tuple[Array, Array]:
     """Covariance (k, k) and inflation (k,); a parameter at a bound or without effect is taken as fixed."""
     k = len(free)
@@ -174,8 +258,12 @@ def _covariance(
     length = np.sqrt(np.maximum(np.sum(columns**2, axis=0) + np.diag(prior), 1e-300))
     columns, prior = columns / length, prior / np.outer(length, length)
     bread = np.linalg.pinv(columns.T @ columns + prior, rcond=1e-14)
-    white = bread @ (colour.variance * (columns.T @ columns) + prior) @ bread
-    coloured = bread @ (coloured_meat(columns, colour) + prior) @ bread
+    white, coloured = prior.copy(), prior.copy()
+    for rows, colour in series:
+        own = columns[rows]
+        white += colour.variance * (own.T @ own)
+        coloured += coloured_meat(own, colour)
+    white, coloured = bread @ white @ bread, bread @ coloured @ bread
     covariance = np.full((k, k), np.nan)
     covariance[np.ix_(inside, inside)] = coloured / np.outer(length, length)
     inflation = np.ones(k)
@@ -230,7 +318,7 @@ class Profile:
 def profile(found: Estimate, name: str) -> Profile:
     """The 95 percent interval of one parameter by its profile likelihood, coloured residuals and all."""
     i = found.index(name)
-    unit = max(found.colour.variance, 1e-300) * float(found.inflation[i])
+    unit = max(found.variance, 1e-300) * float(found.inflation[i])
     total = _total_cost(found, found.params)
     others = [f for f in found.free if f.name != name]
     # A breath of a pull where none is declared: what the held value leaves without effect stays put.

@@ -158,7 +158,7 @@ def _fit_dict(f: FlowFit) -> dict[str, Any]:
         "budget": [{"name": c.name, "limits": c.limits, "uncertainty": c.uncertainty} for c in f.budget],
         "combined_uncertainty": f.combined,
         "noise": found.scale / float(found.weight[0]),
-        "samples_as_one": found.colour.samples_as_one,
+        "samples_as_one": found.colours[0].samples_as_one,
         "condition": found.condition,
         "iterations": found.iterations,
         "converged": found.converged,

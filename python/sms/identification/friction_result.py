@@ -6,13 +6,11 @@ import math
 from typing import Any
 
 from sms import _core
-from sms.identification.friction import EQUATION, FrictionResult, LawFit, Told
+from sms.identification.friction import FrictionResult
+from sms.identification.friction_fit import EQUATION, LawFit, Told
 from sms.io.rig import Declaration
 from sms.parameters import PARAMETERS
 from sms.units_display import format_estimate, words
-
-COVERAGE = 2.0
-"""Standard errors that become the declared uncertainty, about 95 percent."""
 
 
 def sentences(result: FrictionResult) -> list[str]:
@@ -32,7 +30,7 @@ def sentences(result: FrictionResult) -> list[str]:
     unsure = [t for t in best.told if not t.shown]
     if unsure:
         said.append(
-            "Fitted but not shown (zero lies within 2.6 standard errors, or a bound was reached): "
+            "Fitted but not shown (so far from zero by chance as well, or at a bound): "
             + "; ".join(told_words(t) for t in unsure)
             + "."
         )
@@ -59,9 +57,12 @@ def _rms_words(f: LawFit) -> str:
 
 
 def declarations(result: FrictionResult) -> dict[str, Declaration]:
-    """What the best law identified, as a rig file declares it. Sensor errors are not the machine's."""
+    """What the best law identified, with its 95 percent interval, as a rig file declares it.
+
+    Sensor errors are not the machine's.
+    """
     return {
-        t.name: Declaration(t.value, COVERAGE * t.error)
+        t.name: Declaration(t.value, t.half_width)
         for t in result.law(result.best).told
         if t.shown and not t.name.startswith("sensor_")
     }
@@ -90,7 +91,8 @@ def _law_dict(f: LawFit) -> dict[str, Any]:
         "rms_validate": f.rms_validate,
         "parameters": [
             {
-                "name": t.name, "value": t.value, "standard_error": t.error, "shown": t.shown,
+                "name": t.name, "value": t.value, "standard_error": t.error, "freedom": t.freedom,
+                "half_width_95": t.half_width, "shown": t.shown,
                 "scatter": t.scatter, "runs": t.runs,
             }
             for t in f.told
@@ -98,6 +100,6 @@ def _law_dict(f: LawFit) -> dict[str, Any]:
         "not_shown": [{"name": n, "why": why} for n, why in f.left_out],
         "correlation": f.found.correlation,
         "condition": f.found.condition,
-        "samples_as_one": f.found.colour.samples_as_one,
+        "samples_as_one": f.found.colours[0].samples_as_one,
         "warnings": list(f.found.warnings),
     }  # fmt: skip

@@ -43,7 +43,7 @@ class Table(BaseModel):
 class RigTable(Table):
     """[rig]: what was measured."""
 
-    kind: Literal["cylinder", "tank", "bench", "platform", "flow_test"]
+    kind: Literal["cylinder", "tank", "bench", "platform", "flow_test", "spool_test"]
     title: str = ""
     notes: str = ""
 

@@ -27,6 +27,7 @@ _UNITS = {
     "time": "s",
     "valve_command": "V",
     "setpoint": "m",
+    "spool_position": "m",
     "extension": "m",
     "chamber_pressure_lower": "Pa",
     "chamber_pressure_upper": "Pa",
@@ -88,8 +89,10 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
                 "chamber_pressure_lower",
                 "chamber_pressure_upper",
             ),
-            optional=("supply_pressure", "setpoint", "rod_force"),
+            optional=("supply_pressure", "setpoint", "rod_force", "spool_position"),
         ),
+        # The valve alone, its spool's position measured.
+        "spool_test": Kind(needed=("time", "valve_command", "spool_position"), optional=()),
         "platform": Kind(
             needed=(
                 "time",

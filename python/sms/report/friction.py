@@ -8,12 +8,9 @@ import numpy as np
 
 from sms import _core
 from sms.diagnosis.prepare import Motion
-from sms.identification.friction import (
-    EQUATION,
-    FrictionResult,
-    friction_map,
-    law_over_record,
-)
+from sms.identification.friction import FrictionResult
+from sms.identification.friction_fit import EQUATION
+from sms.identification.friction_map import friction_map, law_over_record
 from sms.identification.friction_result import sentences
 from sms.report.markup import esc, section, table
 from sms.report.panels import (

@@ -1,0 +1,107 @@
+"""How often the stated intervals of `sms identify actuator` hold the truth, over seeded repeats.
+
+    python -m validation.actuator_runs.trial [--repeats 200] [--seed 1] [--machine other] [--file trials.jsonl]
+
+Each repeat is another machine within what its rig file declares, other excitations, other noise: four runs of four
+seconds (draw.py). One repeat is one line of the file; a run that was stopped goes on where it ended. The table is of
+all repeats in the file that were asked for.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import NormalDist
+
+import numpy as np
+from sms.identification.actuator import identify_actuator
+from sms.parameters import PARAMETERS
+from sms.units_display import display_unit, words
+
+from validation.actuator_runs.draw import Machine, draw
+
+LEVEL = NormalDist().inv_cdf(0.975)
+
+
+@dataclass(frozen=True)
+class Repeat:
+    """One machine identified: name -> (true, found, standard error) of what was fitted; SI."""
+
+    seed: int
+    told: dict[str, tuple[float, float, float]]
+    residual_over_noise: float
+    birge: float
+
+
+def repeat(seed: int, machine: Machine) -> Repeat:
+    """Draw one machine, identify it, open the truth."""
+    with tempfile.TemporaryDirectory() as folder:
+        truth = draw(Path(folder), seed, machine)
+        fit = identify_actuator(Path(folder) / "rig.toml").fit
+    told = {t.name: (truth[t.name], t.value, t.error) for t in fit.wanted if t.name in truth}
+    return Repeat(seed, told, fit.found.scale, fit.birge)
+
+
+def run(seeds: Sequence[int], file: Path, machine: Machine) -> Iterator[Repeat]:
+    """Every repeat, those in the file first; new ones are added to it."""
+    done: dict[int, Repeat] = {}
+    if file.exists():
+        for line in file.read_text().splitlines():
+            values = json.loads(line)
+            values["told"] = {name: tuple(v) for name, v in values["told"].items()}
+            done[values["seed"]] = Repeat(**values)
+    for seed in seeds:
+        if seed not in done:
+            found = repeat(seed, machine)
+            with file.open("a") as lines:
+                lines.write(json.dumps(asdict(found)) + "\n")
+            done[seed] = found
+        yield done[seed]
+
+
+def table(repeats: Sequence[Repeat]) -> list[str]:
+    """Markdown: how often the 95 percent interval held the truth, and how far off the estimates were."""
+    names = list(dict.fromkeys(name for r in repeats for name in r.told))
+    lines = [
+        "| parameter | fitted in | covered | error, rms | as stated, rms |",
+        "|---|---|---|---|---|",
+    ]
+    for name in names:
+        rows = np.array([r.told[name] for r in repeats if name in r.told])
+        rows = rows[np.isfinite(rows[:, 2])]
+        off = rows[:, 1] - rows[:, 0]
+        covered = float(np.mean(np.abs(off) <= LEVEL * rows[:, 2]))
+        unit = display_unit(PARAMETERS[name].unit, float(np.median(np.abs(rows[:, 0]))), name)
+        rms, stated = (unit.factor * float(np.sqrt(np.mean(v**2))) for v in (off, rows[:, 2]))
+        lines.append(
+            f"| {words(name)} | {len(rows)} of {len(repeats)} | {100.0 * covered:.1f} % | "
+            f"{rms:.2g} {unit.label} | {stated:.2g} {unit.label} |"
+        )
+    return lines
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(prog="python -m validation.actuator_runs.trial")
+    parser.add_argument("--repeats", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1, help="of the first repeat")
+    parser.add_argument("--machine", choices=("published", "other"), default="published")
+    parser.add_argument("--file", type=Path, help="default: build/actuator_trials_MACHINE.jsonl")
+    options = parser.parse_args()
+    file = options.file or Path("build") / f"actuator_trials_{options.machine}.jsonl"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    seeds = range(options.seed, options.seed + options.repeats)
+    repeats = []
+    for found in run(seeds, file, options.machine):
+        repeats.append(found)
+        print(f"\r{len(repeats)} of {options.repeats}", end="", flush=True)
+    print(f"\r{len(repeats)} repeats from seed {options.seed}\n")
+    print("\n".join(table(repeats)))
+
+
+if __name__ == "__main__":
+    main()
