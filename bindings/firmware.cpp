@@ -110,11 +110,11 @@ class Controller {
       if (index < fw::first_setting) {
         throw py::key_error("there is no setting '" + name + "'; sms._core.firmware_settings() lists them");
       }
-      const fw::ParameterInfo& info = *fw::parameter_info(index);
+      const fw::ParameterBounds& bounds = *fw::parameter_bounds(index);
       const float converted = float(value);
-      if (!(converted >= info.lower && converted <= info.upper)) {
-        throw py::value_error(name + " = " + std::to_string(value) + " is outside " + std::to_string(info.lower) +
-                              " to " + std::to_string(info.upper));
+      if (!(converted >= bounds.lower && converted <= bounds.upper)) {
+        throw py::value_error(name + " = " + std::to_string(value) + " is outside " + std::to_string(bounds.lower) +
+                              " to " + std::to_string(bounds.upper));
       }
       *fw::parameter(p, index) = converted;
     }

@@ -110,20 +110,38 @@ void tick(Application& app, const sms_hardware_inputs& in, sms_hardware_outputs&
 
 // ---- for the parts of the application ----
 
+void note(Application& app, EventKind kind, Word detail);
+
+// modes.cpp
+bool is_driven(Mode mode);
+void enter(Application& app, Mode mode, Reason why);
+// Takes the platform out of its mode where it has to be.
+void watch_modes(Application& app);
 // Asks for a mode; the reason why not, or Reason::none.
 Reason request_mode(Application& app, Mode wanted, Reason why);
 void request_law(Application& app, ControlLaw law);
 void acknowledge(Application& app);
+void take_control_by(Application& app, Word session);
+void give_up_control(Application& app);
+
+// setpoints.cpp
 void take_extension_setpoint(Application& app, const float (&extension)[SMS_LEGS], Word alive, Word session);
 void take_attitude_setpoint(Application& app, const float (&attitude)[3], Word alive, Word session);
 // One that the next has to confirm; only answered.
 void postpone_setpoint(Application& app, Word alive, Word session);
+// The last one taken, by inverse kinematics and within the stroke; the way to it begins.
+void resolve_setpoint(Application& app);
+// Where a piston shall be now, m.
+float on_the_way(const Application& app, int leg);
+
+// drive.cpp
+void drive_legs(Application& app);
+void follow_pose(Application& app);
+
+// derived.cpp
 WriteAccess write_access(const Application& app);
 // Puts the staged parameters into effect, or says why not.
 ParameterResult commit_parameters(Application& app, Word count);
-void take_control_by(Application& app, Word session);
-void give_up_control(Application& app);
-void note(Application& app, EventKind kind, Word detail);
 
 // command.cpp, telemetry.cpp, console.cpp
 void receive(Application& app, const sms_hardware_inputs& in, sms_hardware_outputs& out);

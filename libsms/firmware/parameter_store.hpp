@@ -40,17 +40,17 @@ inline ParameterResult parameters_write(ParameterStore& store, WriteAccess acces
     return ParameterResult::no_transaction;
   }
   store.used = now;
-  const ParameterInfo* info = parameter_info(index);
-  if (info == nullptr) {
+  const ParameterBounds* bounds = parameter_bounds(index);
+  if (bounds == nullptr) {
     return ParameterResult::unknown_index;
   }
-  if (access == WriteAccess::none || (access == WriteAccess::live && !info->live)) {
+  if (access == WriteAccess::none || (access == WriteAccess::live && !is_live(index))) {
     return ParameterResult::moving;
   }
   if (!is_finite(value)) {
     return ParameterResult::not_a_number;
   }
-  if (value < info->lower || value > info->upper) {
+  if (value < bounds->lower || value > bounds->upper) {
     return ParameterResult::out_of_range;
   }
   *parameter(store.staged, index) = value;

@@ -1,21 +1,48 @@
-// The two lists of parameters as tables in the flash.
+// The two lists of parameters as tables in the flash. It is full of them, so they are as short as they can be: bounds,
+// places and names apart, and the names one after the other without pointers to them.
 #include "settings.hpp"
 
 namespace sms {
 namespace firmware {
 namespace {
 
-const ParameterInfo kMachine[param_count] = {
-#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) {#name, float(lower), float(upper), false},
+constexpr int kSettingCount = end_of_settings - first_setting;
+
+const ParameterBounds kMachineBounds[param_count] = {
+#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) {float(lower), float(upper)},
 #include "sms/params.def"
 };
 
-constexpr int kSettingCount = end_of_settings - first_setting;
-
-const ParameterInfo kSettings[kSettingCount] = {
-#define SMS_SETTING(name, unit, lower, value, upper, live, doc) {#name, float(lower), float(upper), (live) != 0},
+const ParameterBounds kSettingBounds[kSettingCount] = {
+#define SMS_SETTING(name, unit, lower, value, upper, live, doc) {float(lower), float(upper)},
 #include "settings.def"
 };
+
+float sms_paramsf::*const kMachinePlace[param_count] = {
+#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) &sms_paramsf::name,
+#include "sms/params.def"
+};
+
+float Settings::*const kSettingPlace[kSettingCount] = {
+#define SMS_SETTING(name, unit, lower, value, upper, live, doc) &Settings::name,
+#include "settings.def"
+};
+
+const bool kLive[kSettingCount] = {
+#define SMS_SETTING(name, unit, lower, value, upper, live, doc) (live) != 0,
+#include "settings.def"
+};
+
+// Every name with its zero.
+const char kMachineNames[] =
+#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) #name "\0"
+#include "sms/params.def"
+    ;
+
+const char kSettingNames[] =
+#define SMS_SETTING(name, unit, lower, value, upper, live, doc) #name "\0"
+#include "settings.def"
+    ;
 
 constexpr Long fnv1a(const char* text) {
   Long hash = 0x811C9DC5u;
@@ -32,44 +59,51 @@ constexpr Long kHash = fnv1a(
 #include "settings.def"
 );
 
-bool same(const char* a, const char* b) {
-  for (; *a != '\0' && *a == *b; ++a, ++b) {
+bool is_setting(int index) { return index >= first_setting && index < end_of_settings; }
+
+// Which one of `count` names it is; -1: none.
+int place_of(const char* name, const char* names, int count) {
+  for (int i = 0; i < count; ++i) {
+    const char* wanted = name;
+    for (; *wanted != '\0' && *wanted == *names; ++wanted, ++names) {
+    }
+    if (*wanted == *names) {
+      return i;
+    }
+    for (; *names != '\0'; ++names) {
+    }
+    ++names;
   }
-  return *a == *b;
+  return -1;
 }
 
 }  // namespace
 
-const ParameterInfo* parameter_info(int index) {
+Parameters::Parameters() = default;
+
+const ParameterBounds* parameter_bounds(int index) {
   if (index >= 0 && index < param_count) {
-    return &kMachine[index];
+    return &kMachineBounds[index];
   }
-  return index >= first_setting && index < end_of_settings ? &kSettings[index - first_setting] : nullptr;
+  return is_setting(index) ? &kSettingBounds[index - first_setting] : nullptr;
 }
 
 float* parameter(Parameters& parameters, int index) {
-  switch (index) {
-#define SMS_SETTING(name, unit, lower, value, upper, live, doc) \
-  case index_of_##name:                                         \
-    return &parameters.settings.name;
-#include "settings.def"
-    default:
-      return index >= 0 && index < param_count ? &param(parameters.machine, index) : nullptr;
+  if (index >= 0 && index < param_count) {
+    return &(parameters.machine.*kMachinePlace[index]);
   }
+  return is_setting(index) ? &(parameters.settings.*kSettingPlace[index - first_setting]) : nullptr;
 }
 
+bool is_live(int index) { return is_setting(index) && kLive[index - first_setting]; }
+
 int parameter_index(const char* name) {
-  for (int i = 0; i < param_count; ++i) {
-    if (same(kMachine[i].name, name)) {
-      return i;
-    }
+  const int machine = place_of(name, kMachineNames, param_count);
+  if (machine >= 0) {
+    return machine;
   }
-  for (int i = 0; i < kSettingCount; ++i) {
-    if (same(kSettings[i].name, name)) {
-      return first_setting + i;
-    }
-  }
-  return -1;
+  const int setting = place_of(name, kSettingNames, kSettingCount);
+  return setting >= 0 ? first_setting + setting : -1;
 }
 
 Long parameter_hash() { return kHash; }

@@ -25,19 +25,22 @@ enum SettingIndex : int {
 struct Parameters {
   Params<float> machine;
   Settings settings;
+
+  Parameters();  // the defaults; not inline, for there are hundreds of them
 };
 
-// What is known of a parameter, nothing of its value.
-struct ParameterInfo {
-  const char* name;
+// What a value may be.
+struct ParameterBounds {
   float lower;
   float upper;
-  bool live;
 };
 
 // nullptr when there is no such index.
-const ParameterInfo* parameter_info(int index);
+const ParameterBounds* parameter_bounds(int index);
 float* parameter(Parameters& parameters, int index);
+
+// Whether it may be written while the platform is levelled.
+bool is_live(int index);
 
 // -1 when there is no such name.
 int parameter_index(const char* name);

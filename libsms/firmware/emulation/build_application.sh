@@ -13,12 +13,12 @@ bare="-DNDEBUG -DEIGEN_DONT_VECTORIZE -DEIGEN_MAX_ALIGN_BYTES=0 -DEIGEN_NO_IO -f
   -fno-threadsafe-statics -fno-use-cxa-atexit -fno-math-errno -ffp-contract=off -ffunction-sections -fdata-sections"
 strict="-Wall -Wextra -Wconversion -Wfloat-equal -Wshadow -Wdouble-promotion -Werror"
 includes="-I$firmware -I$libsms/include -isystem $eigen"
-sources="application command console settings sms_firmware telemetry"
+sources=$(cd "$firmware" && for source in *.cpp; do echo "${source%.cpp}"; done | grep -vx main)
 
 # shellcheck disable=SC2086  # lists of words, from here on
 for source in $sources main; do
   optimise=-O2
-  case $source in console | settings) optimise=-Os ;; esac
+  case $source in console | derived | settings) optimise=-Os ;; esac
   ${CMAKE_CXX_COMPILER_LAUNCHER-} arm-none-eabi-g++ $target -std=c++14 $optimise $bare $strict $includes -fstack-usage -c "$firmware/$source.cpp" \
     -o "$out/$source.app.arm.o"
 done

@@ -10,7 +10,7 @@ eigen=${EIGEN_INCLUDE:-/usr/include/eigen3}
 flags="-DNDEBUG -DEIGEN_DONT_VECTORIZE -DEIGEN_MAX_ALIGN_BYTES=0 -fno-exceptions -fno-rtti -fno-math-errno
   -ffp-contract=off -Wall -Wextra -Wdouble-promotion -Werror -I$firmware -I$here -I$firmware/tests -I$libsms/include
   -isystem $eigen"
-sources="application command console settings sms_firmware telemetry"
+sources=$(cd "$firmware" && for source in *.cpp; do echo "${source%.cpp}"; done | grep -vx main)
 
 # compile MACHINE STANDARD SOURCE OBJECT
 compile() {
@@ -35,7 +35,7 @@ compile "$machine" c++17 "$here/lockstep.cpp" "$out/lockstep.o"
 compile "$machine" c++14 "$libsms/src/abi_double.cpp" "$out/abi_double.o"
 # shellcheck disable=SC2086
 g++ "$out/lockstep.o" "$out/abi_double.o" "$out/info.$bits.o" $objects -o "$out/lockstep.host"
-for source in application command console settings telemetry; do
+for source in $(echo "$sources" | grep -vx sms_firmware); do
   # shellcheck disable=SC2086
   ${CMAKE_CXX_COMPILER_LAUNCHER-} g++ -std=c++14 $flags -include "$here/poison.h" -c "$firmware/$source.cpp" \
     -o "$out/$source.poisoned.o"

@@ -10,8 +10,8 @@ mkdir -p "$out/corpus"
 objects=
 flags="-O1 -g -fno-math-errno -ffp-contract=off -I$firmware -I$libsms/include -isystem ${EIGEN_INCLUDE:-/usr/include/eigen3}"
 sanitizers="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all"
-for source in "$firmware"/application.cpp "$firmware"/command.cpp "$firmware"/console.cpp "$firmware"/settings.cpp \
-  "$firmware"/telemetry.cpp "$here"/fuzz_application.cpp; do
+for source in "$firmware"/*.cpp "$here"/fuzz_application.cpp; do
+  [ "$source" != "$firmware/main.cpp" ] || continue
   object=$out/$(basename "$source" .cpp).o
   # shellcheck disable=SC2086  # lists of words
   clang++ -std=c++17 $flags $sanitizers -c "$source" -o "$object"

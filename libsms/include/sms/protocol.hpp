@@ -99,7 +99,7 @@ inline float from_real32(Long bits) {
 
 // ---- enumerations and frames ----
 
-#define SMS_VALUES(table) enum class table : int {
+#define SMS_VALUES(table) enum class table : Word {
 #define SMS_VALUE(name, number) name = (number),
 #define SMS_VALUES_END \
   }                    \
