@@ -1,9 +1,10 @@
-"""A day of traffic in less than a day, without a growing process: `python -m validation.link_traffic --hours 24`.
+"""A day of traffic in minutes, without a growing process: `python -m validation.link_traffic --hours 24`.
 
-A minute of a driven virtual rig is recorded in simulated time, all frames of rig and desk. Its log is replayed onto
-a bus again and again, as fast as the bus takes it, while a desk listens, decodes every message ten times a second of
-traffic, and draws the monitor's table once a second of it. Printed: how much faster than real time that is, and the
-resident memory of the process after a twentieth of the traffic and at its end.
+A minute of a driven virtual rig is recorded in simulated time: all frames of rig and desk, as often as they are on the
+bus. Its log is replayed onto python-can's virtual bus again and again, as fast as the bus takes it, while a desk
+listens as `sms can monitor` does: it hears every frame, decodes every message five times a second of traffic, and draws
+its table five times a second of the computer. Printed: how much faster than real time that is, and the resident memory
+of the process every twentieth of the way.
 """
 
 from __future__ import annotations
@@ -11,8 +12,9 @@ from __future__ import annotations
 import argparse
 import tempfile
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -22,26 +24,26 @@ from sms.link.bus import BusAddress, open_bus
 from sms.link.codec import CONTROLLER, sent_by
 from sms.link.drive import drive
 from sms.link.logs import LogWriter, read_frames
-from sms.link.monitor import picture
+from sms.link.monitor import REFRESH, picture
 from sms.link.motion import PlatformMotion
 from sms.link.real_time import SimulatedBus, SimulatedWorld
 from sms.link.rig_link import RigLink
 from sms.link.virtual_rig import VirtualRig
 
 MINUTE = 60.0
-DECODED, DRAWN = 0.1, 1.0  #: s of traffic
+PARTS = 20  #: after each the memory is read
 GROWTH_GOAL = 8.0  #: MiB; what the interpreter's own pools may still take
 
 
-@dataclass(frozen=True)
+@dataclass
 class Traffic:
     """What was replayed and what it took."""
 
-    frames: int
-    hours: float  #: of traffic
-    elapsed: float  #: s
-    early: float  #: MiB; resident after a twentieth
-    late: float  #: MiB; at the end
+    frames: int = 0
+    hours: float = 0.0  #: of traffic
+    elapsed: float = 0.0  #: s
+    memory: list[tuple[float, float]] = field(default_factory=list)
+    """Hours of traffic, resident MiB; after each part."""
 
     @property
     def speed(self) -> float:
@@ -50,14 +52,16 @@ class Traffic:
 
     @property
     def growth(self) -> float:
-        """MiB"""
-        return self.late - self.early
+        """From the first part's end to the largest after it, MiB."""
+        resident = [mebibytes for _, mebibytes in self.memory]
+        return max(resident) - resident[0]
 
     def __str__(self) -> str:
         """One line for a person."""
         return (
             f"{self.hours:g} h of traffic, {self.frames} frames, in {self.elapsed:.0f} s: {self.speed:.0f} times real "
-            f"time; resident {self.early:.1f} MiB after a twentieth of it, {self.late:.1f} MiB at the end"
+            f"time; resident {self.memory[0][1]:.1f} MiB after a twentieth of it, {self.memory[-1][1]:.1f} MiB at the "
+            f"end, {self.growth:.1f} MiB more at most"
         )
 
 
@@ -89,44 +93,54 @@ def record_minute(log: Path) -> float:
     return length
 
 
-def replay_hours(hours: float) -> Traffic:
-    """Replay so much traffic; measure time and memory."""
-    with tempfile.TemporaryDirectory() as folder:
+def listen_to(link: RigLink, screen: Console, drawn: float) -> float:
+    """What a desk that watches does besides hearing frames; when the table was drawn last, s."""
+    for message in sent_by(CONTROLLER).values():
+        link.latest(message.name)
+    events = link.take_events()
+    if time.monotonic() - drawn < REFRESH:
+        return drawn
+    screen.file.seek(0)
+    screen.print(picture(link, {}, events))
+    return time.monotonic()
+
+
+def replay_hours(
+    hours: float, report: Callable[[float, float], None] = lambda _hours, _mebibytes: None
+) -> Traffic:
+    """Replay so much traffic; measure time and memory, and report it after each part."""
+    done = Traffic()
+    address = BusAddress("virtual", "traffic")
+    process = psutil.Process()
+    now = 0.0
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        (Path(folder) / "screen.txt").open("w") as screen,
+        open_bus(address) as source,
+        open_bus(address) as bus,
+        RigLink(bus, lambda: now, 3) as link,
+    ):
         log = Path(folder) / "minute.blf"
         length = record_minute(log)
-        console = Console(file=(Path(folder) / "screen.txt").open("w"), width=120)
-        process = psutil.Process()
-        telemetry = sent_by(CONTROLLER)
-        rounds = max(20, round(3600.0 * hours / length))
-        address = BusAddress("virtual", "traffic")
-        now, frames, early = 0.0, 0, 0.0
-        with (
-            open_bus(address) as source,
-            open_bus(address) as bus,
-            RigLink(bus, lambda: now, 3) as link,
-        ):
-            begin = time.monotonic()
-            for number in range(rounds):
-                decoded = drawn = 0.0
-                for frame in read_frames(log):
-                    now = number * length + frame.timestamp
-                    source.send(frame)
-                    link.poll()
-                    frames += 1
-                    if frame.timestamp >= decoded:
-                        decoded += DECODED
-                        for message in telemetry.values():
-                            link.latest(message.name)
-                    if frame.timestamp >= drawn:
-                        drawn += DRAWN
-                        console.file.seek(0)
-                        console.print(picture(link, {}, link.take_events()))
-                if number + 1 == rounds // 20:
-                    early = process.memory_info().rss / 2**20
-            elapsed = time.monotonic() - begin
-        late = process.memory_info().rss / 2**20
-        console.file.close()
-    return Traffic(frames, rounds * length / 3600.0, elapsed, early, late)
+        console = Console(file=screen, width=120)
+        rounds = PARTS * ceil(3600.0 * hours / length / PARTS)
+        begin, drawn = time.monotonic(), 0.0
+        for number in range(1, rounds + 1):
+            looked = 0.0
+            for frame in read_frames(log):
+                now = (number - 1) * length + frame.timestamp
+                source.send(frame)
+                link.poll()
+                done.frames += 1
+                if frame.timestamp >= looked:
+                    looked += REFRESH
+                    drawn = listen_to(link, console, drawn)
+            if number % (rounds // PARTS) == 0:
+                done.hours = number * length / 3600.0
+                done.memory.append((done.hours, process.memory_info().rss / 2**20))
+                report(*done.memory[-1])
+        done.elapsed = time.monotonic() - begin
+    return done
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -134,7 +148,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m validation.link_traffic", description=__doc__)
     parser.add_argument("--hours", type=float, default=1.0, help="of traffic")
     options = parser.parse_args(arguments)
-    traffic = replay_hours(options.hours)
+    traffic = replay_hours(
+        options.hours,
+        lambda hours, mebibytes: print(f"{hours:6.2f} h: {mebibytes:.1f} MiB", flush=True),
+    )
     print(traffic)
     raise SystemExit(traffic.speed < 1.0 or traffic.growth > GROWTH_GOAL)
 

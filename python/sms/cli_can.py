@@ -125,15 +125,20 @@ def get(
     ] = False,
 ) -> None:
     """Print parameters as the rig has them, in SI units."""
-    from sms.link.parameters import is_default, known_parameters, read_parameter  # noqa: PLC0415
+    from sms.link.parameters import (  # noqa: PLC0415
+        is_default,
+        known_parameter,
+        known_parameters,
+        read_parameter,
+    )
 
-    known = known_parameters()
+    wanted = [known_parameter(name) for name in names or known_parameters()]
     with linked(interface, channel, bitrate) as link:
         link.connect()
-        for name in names or known:
-            value = read_parameter(link, name)
-            if not changed or not is_default(name, value):
-                print(f"{name} = {value:.7g} {known[name].unit}")
+        for parameter in wanted:
+            value = read_parameter(link, parameter.name)
+            if not changed or not is_default(parameter.name, value):
+                print(f"{parameter.name} = {value:.7g} {parameter.unit}")
 
 
 @can_app.command(

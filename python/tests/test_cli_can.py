@@ -45,6 +45,16 @@ def test_get_reads_from_the_rig_that_comes_with_a_virtual_bus() -> None:
     assert "position_gain = 40 V/m\nlevel_height = 0.5 m\n" in text
 
 
+def test_get_of_an_unknown_name_says_the_nearest_few_and_how_to_list_all() -> None:
+    with pytest.raises(InputError) as caught:
+        CliRunner().invoke(app, ["can", "get", "position_gain", "leak"], catch_exceptions=False)
+    text = str(caught.value)
+    assert "no parameter 'leak'" in text
+    assert "valve_leakage" in text
+    assert "`sms can get` without a name lists all" in text
+    assert len(text) < 300
+
+
 def test_set_checks_before_it_sends() -> None:
     for setting, said in (("position_gian=1", "did you mean"), ("level_height=99", "outside")):
         with pytest.raises(InputError, match=said):

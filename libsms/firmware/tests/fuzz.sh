@@ -1,6 +1,7 @@
 #!/bin/sh
 # Frames and characters under libFuzzer with the sanitizers: fuzz.sh FOLDER SECONDS. The corpus beside this file is where
-# it starts; what it finds anew stays in FOLDER/corpus.
+# it starts; what it finds anew stays in FOLDER/corpus. `fuzz.sh FOLDER keep` then puts the least of both that reaches
+# the same code into corpus/found, which fuzz_corpus.cpp runs in every test.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 firmware=$(cd "$here/.." && pwd)
@@ -20,4 +21,10 @@ done
 # shellcheck disable=SC2086
 clang++ -fsanitize=fuzzer,address,undefined $objects -o "$out/fuzz_application"
 cd "$out"
+if [ "$seconds" = keep ]; then
+  rm -rf kept && mkdir kept
+  ./fuzz_application -merge=1 -use_counters=0 -max_len=2048 kept "$here/corpus" corpus
+  rm -rf "$here/corpus/found" && mv kept "$here/corpus/found"
+  exit 0
+fi
 ./fuzz_application -max_total_time="$seconds" -max_len=2048 -print_final_stats=1 corpus "$here/corpus"

@@ -62,7 +62,7 @@ def known_parameters() -> Mapping[str, RigParameter]:
 
 def read_parameter(link: RigLink, name: str) -> float:
     """The value in effect, in the parameter's SI unit. RefusedError, NotConnectedError."""
-    index = _index(name)
+    index = known_parameter(name).index
     answer = _ask(link, "ParameterRead", {"parameter_index": index}, "read", index)
     return float(answer["parameter_value"])
 
@@ -73,7 +73,7 @@ def write_parameters(link: RigLink, values: Mapping[str, float]) -> dict[str, fl
     The values are checked here first. InputError; RefusedError when the rig refuses one: then none
     is changed. A confirmation that gets lost begins the whole transaction again.
     """
-    indices = {name: _index(name) for name in values}
+    indices = {name: known_parameter(name).index for name in values}
     for name, value in values.items():
         _check(name, value)
     for _ in range(TRIES):
@@ -152,11 +152,13 @@ def _checked(signals: Mapping[str, Value], operation: str) -> Mapping[str, Value
     return signals
 
 
-def _index(name: str) -> int:
+def known_parameter(name: str) -> RigParameter:
+    """What is known of a parameter. InputError for a name that no rig knows."""
     known = known_parameters()
     if name not in known:
-        raise InputError(f"there is no parameter '{name}'; {did_you_mean(name, known)}")
-    return known[name].index
+        remedy = did_you_mean(name, known, "`sms can get` without a name lists all")
+        raise InputError(f"there is no parameter '{name}'; {remedy}")
+    return known[name]
 
 
 def _check(name: str, value: float) -> None:
@@ -178,8 +180,7 @@ def parse_setting(text: str) -> tuple[str, float]:
     name, equals, value = (part.strip() for part in text.partition("="))
     if not equals:
         raise InputError(f"{text}: write NAME=VALUE, for instance position_gain=20")
-    _index(name)
-    unit = known_parameters()[name].unit
+    unit = known_parameter(name).unit
     try:
         return name, float(value)
     except ValueError:
