@@ -1,9 +1,9 @@
 """A day of traffic in minutes, without a growing process: `python -m validation.link_traffic --hours 24`.
 
 A minute of a driven virtual rig is recorded in simulated time: all frames of rig and desk, as often as they are on the
-bus. Its log is replayed onto python-can's virtual bus again and again, as fast as the bus takes it, while a desk
-listens as `sms can monitor` does: it hears every frame, decodes every message five times a second of traffic, and draws
-its table five times a second of the computer. Printed: how much faster than real time that is, and the resident memory
+bus. Its log is played again and again, as fast as it goes, to a desk that listens as `sms can monitor --log` does: it
+hears every frame, decodes every message five times a second of traffic, and draws its table five times a second of the
+computer. Printed: how much faster than real time that is, and the resident memory
 of the process every twentieth of the way.
 """
 
@@ -23,10 +23,11 @@ from rich.console import Console
 from sms.link.bus import BusAddress, open_bus
 from sms.link.codec import CONTROLLER, sent_by
 from sms.link.drive import drive
-from sms.link.logs import LogWriter, read_frames
+from sms.link.logs import LogWriter
 from sms.link.monitor import REFRESH, picture
 from sms.link.motion import PlatformMotion
 from sms.link.real_time import SimulatedBus, SimulatedWorld
+from sms.link.replay import LogBus
 from sms.link.rig_link import RigLink
 from sms.link.virtual_rig import VirtualRig
 
@@ -110,31 +111,27 @@ def replay_hours(
 ) -> Traffic:
     """Replay so much traffic; measure time and memory, and report it after each part."""
     done = Traffic()
-    address = BusAddress("virtual", "traffic")
     process = psutil.Process()
-    now = 0.0
+    heard = 0.0
     with (
         tempfile.TemporaryDirectory() as folder,
         (Path(folder) / "screen.txt").open("w") as screen,
-        open_bus(address) as source,
-        open_bus(address) as bus,
-        RigLink(bus, lambda: now, 3) as link,
     ):
         log = Path(folder) / "minute.blf"
         length = record_minute(log)
         console = Console(file=screen, width=120)
         rounds = PARTS * ceil(3600.0 * hours / length / PARTS)
         begin, drawn = time.monotonic(), 0.0
+        link = RigLink(LogBus(log, speed=0.0), lambda: heard, 3)
         for number in range(1, rounds + 1):
-            looked = 0.0
-            for frame in read_frames(log):
-                now = (number - 1) * length + frame.timestamp
-                source.send(frame)
-                link.poll()
-                done.frames += 1
-                if frame.timestamp >= looked:
-                    looked += REFRESH
-                    drawn = listen_to(link, console, drawn)
+            with LogBus(log, speed=0.0) as link.bus:
+                looked = 0.0
+                while (frame := link.poll()) is not None:
+                    heard = (number - 1) * length + frame.timestamp
+                    done.frames += 1
+                    if frame.timestamp >= looked:
+                        looked += REFRESH
+                        drawn = listen_to(link, console, drawn)
             if number % (rounds // PARTS) == 0:
                 done.hours = number * length / 3600.0
                 done.memory.append((done.hours, process.memory_info().rss / 2**20))

@@ -47,6 +47,10 @@ def monitor(
     channel: Channel = None,
     bitrate: Bitrate = DEFAULT_BITRATE,
     seconds: Seconds = None,
+    log: Annotated[
+        Path | None, typer.Option(help="Show what is in this log instead of a bus.")
+    ] = None,
+    speed: Annotated[float, typer.Option(help="Of the log, times real time.")] = 1.0,
 ) -> None:
     """Show what the rig says, as a live table: values with units, how often each frame comes, faults, events.
 
@@ -54,6 +58,13 @@ def monitor(
     """
     from sms.link.monitor import show  # noqa: PLC0415 (python-can takes its time; --help must not)
 
+    if log is not None:
+        from sms.link.replay import LogBus  # noqa: PLC0415
+        from sms.link.rig_link import RigLink  # noqa: PLC0415
+
+        with LogBus(log, speed=speed) as bus, RigLink(bus) as link:
+            show(link, Console(), seconds, lambda: bus.is_over)
+        return
     with linked(interface, channel, bitrate) as link:
         show(link, Console(), seconds)
 

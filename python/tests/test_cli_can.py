@@ -78,6 +78,14 @@ def test_monitor_shows_names_values_and_units() -> None:
         assert word in text
 
 
+def test_monitor_shows_a_recording(tmp_path: Path) -> None:
+    log = tmp_path / "run.blf"
+    output_of("record", str(log), "--seconds", "0.5")
+    text = output_of("monitor", "--log", str(log), "--speed", "0")
+    assert "mode disabled" in text
+    assert "extension_1" in text
+
+
 def test_a_recording_is_a_record(tmp_path: Path) -> None:
     log = tmp_path / "run.blf"
     text = output_of("record", str(log), "--seconds", "1.0")

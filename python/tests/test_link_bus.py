@@ -12,7 +12,7 @@ from sms.io import InputError
 from sms.link.bus import BusAddress, open_bus
 from sms.link.faulty_bus import DELAY, REORDER, FaultyBus, FrameFaults
 from sms.link.logs import LogWriter
-from sms.link.replay import replay
+from sms.link.replay import LogBus, replay
 
 
 @pytest.mark.parametrize(("address", "said"), [
@@ -47,6 +47,26 @@ def data_frame(number: int, identifier: int = 0x115, timestamp: float = 0.0) -> 
         data=number.to_bytes(8, "little"),
         timestamp=timestamp,
     )
+
+
+def test_a_log_is_a_bus_to_listen_to(tmp_path: Path) -> None:
+    log = tmp_path / "run.blf"
+    with LogWriter(log) as writer:
+        for i in range(5):
+            writer.write(data_frame(i, timestamp=3.0 + 100.0 * i))
+    with LogBus(log, speed=0.0) as bus:
+        heard = [bus.recv(0.0) for _ in range(6)]
+        assert [frame.data[0] for frame in heard[:5] if frame] == [0, 1, 2, 3, 4]
+        assert heard[5] is None
+        assert bus.is_over
+    with LogBus(log, speed=1.0) as bus:
+        assert bus.recv(0.0) is not None
+        assert bus.recv(0.001) is None  # the next one comes after 100 s
+        assert not bus.is_over
+    with pytest.raises(InputError, match="time does not run backwards"):
+        LogBus(log, speed=-1.0)
+    with pytest.raises(InputError, match="there is no such log"):
+        LogBus(tmp_path / "none.blf")
 
 
 def test_a_log_is_replayed_without_commands(tmp_path: Path) -> None:

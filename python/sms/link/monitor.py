@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -28,15 +28,23 @@ SHOWN = (
 HIDDEN = ("sample_time", "setpoint_alive", "setpoint_session")
 
 
-def show(link: RigLink, console: Console, seconds: float | None = None) -> None:
-    """Refresh the table until Ctrl-C, or for so many seconds; the last one stays. Only listens."""
+def show(
+    link: RigLink,
+    console: Console,
+    seconds: float | None = None,
+    is_over: Callable[[], bool] = lambda: False,
+) -> None:
+    """Refresh the table until Ctrl-C, for so many seconds, or until it is over; the last one stays.
+
+    Only listens.
+    """
     events: deque[Reading] = deque(maxlen=EVENTS)
     counted, since = dict(link.counts), link.clock()
     begin = since
     try:
         with Live(console=console, auto_refresh=False) as live:
-            while seconds is None or link.clock() - begin < seconds:
-                link.wait(lambda: False, REFRESH if seconds is None else min(REFRESH, seconds))
+            while not is_over() and (seconds is None or link.clock() - begin < seconds):
+                link.wait(is_over, REFRESH if seconds is None else min(REFRESH, seconds))
                 events.extend(link.take_events())
                 now = link.clock()
                 rates = {i: (n - counted.get(i, 0)) / (now - since) for i, n in link.counts.items()}

@@ -1,4 +1,4 @@
-"""A log onto a bus again, in its own time or faster."""
+"""A log onto a bus again, or as a bus that one can listen to; in its own time or faster."""
 
 from __future__ import annotations
 
@@ -15,6 +15,48 @@ from sms.link.logs import read_frames
 from sms.link.rig_link import BusError
 
 REPORT = 500  #: frames between two calls of the progress
+
+
+class LogBus(can.BusABC):
+    """A bus on which a log is played, for one who listens; what is sent on it goes nowhere."""
+
+    def __init__(self, log: Path, *, speed: float = 1.0) -> None:
+        """`speed` times real time, 0 as fast as the listener asks. InputError for a speed below 0."""
+        super().__init__(channel=str(log))
+        self.channel_info = f"log {log}"
+        self.is_over = False
+        self._speed = _checked(speed)
+        self._frames = read_frames(log)
+        self._next = next(self._frames, None)
+        self._first = self._next.timestamp if self._next is not None else 0.0
+        self._begin: float | None = None
+
+    def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
+        frame = self._next
+        if frame is None:
+            self.is_over = True
+            if timeout:
+                time.sleep(timeout)
+            return None, True
+        if self._speed > 0.0:
+            now = time.monotonic()
+            self._begin = now if self._begin is None else self._begin
+            wait = self._begin + (frame.timestamp - self._first) / self._speed - now
+            if timeout is not None and wait > timeout:
+                time.sleep(timeout)
+                return None, True
+            time.sleep(max(0.0, wait))
+        self._next = next(self._frames, None)
+        return frame, True
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Nobody is there to receive it."""
+
+
+def _checked(speed: float) -> float:
+    if speed < 0.0:
+        raise InputError(f"--speed {speed:g}: time does not run backwards; write 0 or more")
+    return speed
 
 
 @dataclass
@@ -38,8 +80,7 @@ def replay(
 
     Without `commands` what a desk sent is left out. InputError for a log that cannot be read, BusError.
     """
-    if speed < 0.0:
-        raise InputError(f"--speed {speed:g}: time does not run backwards; write 0 or more")
+    _checked(speed)
     ours = sent_by(HOST)
     done = Replayed()
     begin = time.monotonic()

@@ -172,7 +172,9 @@ def _apply_effect(params: Sequence[Params], text: str) -> None:
     if not equals:
         raise InputError(f"{where}: write NAME=VALUE, for instance valve_leakage=2e-10")
     if name not in PARAMETERS:
-        raise InputError(f"{where}: {did_you_mean(name, PARAMETERS, 'docs/parameters.md lists all')}")
+        raise InputError(
+            f"{where}: {did_you_mean(name, PARAMETERS, 'docs/parameters.md lists all')}"
+        )
     parameter = PARAMETERS[name]
     try:
         number = float(value)
