@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from validation.rig_faults import TRIALS, Outcome, Trial, row, run_trial
+from validation.rig_fault_trials import TRIALS, Trial
+from validation.rig_faults import Outcome, row, run_trial
 
 ALWAYS = ("lost", "corrupted", "host gone", "two hosts", "sensor broken", "wrong hash")
 SHORT = 2.0  #: s
