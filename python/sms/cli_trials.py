@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 import secrets
+import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from types import ModuleType
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -13,9 +16,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from sms.io.errors import InputError
-
-if TYPE_CHECKING:
-    pass
 
 
 def register(app: typer.Typer) -> None:
@@ -52,13 +52,7 @@ def trials(
     that makes the measurements is independent of the core; it lies in the project's checkout, so the command has to be
     run there.
     """
-    try:
-        from validation.hidden_effects import plant_trial  # noqa: PLC0415 (only in a checkout)
-    except ImportError:
-        raise InputError(
-            "the virtual rigs are part of the project's checkout and need numba: run this there, "
-            "as `.venv/bin/python -m sms.cli trials`, after ./dev build"
-        ) from None
+    plant_trial = _plant_trial()
     first = secrets.randbelow(10**6) if seed is None else seed
     console = Console()
     console.print(f"[dim]--rig {rig} --seed {first} --count {count} --multiple {multiple:g}[/dim]")
@@ -88,6 +82,32 @@ def trials(
     page = out / "trials.html"
     write_text_atomically(page, trials_html(rig, first, multiple, outcomes, plant_trial))
     console.print(f"[dim]written: {page}, {file}[/dim]")
+
+
+def _plant_trial() -> ModuleType:
+    """The trials' own module, from the checkout in which this command was called. InputError outside of one."""
+    checkout = _checkout(Path.cwd())
+    if checkout is None:
+        raise InputError(
+            f"{Path.cwd()} is not in a checkout of the project, where the virtual rigs are; "
+            "call this in one, after ./dev build"
+        )
+    if str(checkout) not in sys.path:
+        sys.path.insert(0, str(checkout))
+    try:
+        return importlib.import_module("validation.hidden_effects.plant_trial")
+    except ModuleNotFoundError as problem:
+        raise InputError(
+            f"the virtual rigs need the Python package {problem.name}; ./dev build installs it"
+        ) from None
+
+
+def _checkout(folder: Path) -> Path | None:
+    """The nearest folder above, or this one, that has the virtual rigs."""
+    above = (folder, *folder.parents)
+    return next(
+        (f for f in above if (f / "validation/hidden_effects/plant_trial.py").is_file()), None
+    )
 
 
 def summary(goals: Sequence[Any]) -> Table:
