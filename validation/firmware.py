@@ -4,7 +4,7 @@
 
 Then the application and the processor in the loop: validation/firmware_application.py. Exit code 1 when a goal is
 missed, when a symbol is called that libsms/firmware_symbols.txt does not list, or when a kinematic result differs from
-the host's in any bit.
+the host's in any bit; else what was printed is written to docs/firmware.md.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from validation import firmware_application
 
 ROOT = Path(__file__).parents[1]
 OUT = ROOT / "build" / "firmware"
+PAGE = ROOT / "docs" / "firmware.md"
 EMULATION = ROOT / "libsms" / "firmware" / "emulation"
 SYMBOLS = ROOT / "libsms" / "firmware_symbols.txt"
 MOST_INSTRUCTIONS = {"inverse kinematics": 3000, "forward kinematics": 6000}
@@ -44,6 +45,17 @@ class Count:
     @property
     def goal(self) -> int | None:
         return next((most for name, most in MOST_INSTRUCTIONS.items() if name in self.name), None)
+
+
+HEAD = """\
+# The firmware on the emulated target
+
+Printed by `./dev firmware`, which writes this page when no goal is missed: the float archive and the application, built
+for a Cortex-M4F (`-mcpu=cortex-m4 -mfloat-abi=hard`) and run by QEMU, which counts instructions, not cycles. What could
+not be tried without the DSP stands in [porting to a DSP](porting_to_dsp.md).
+
+```text
+"""
 
 
 def run(*command: str) -> str:
@@ -86,7 +98,7 @@ def deepest_frame() -> tuple[int, str]:
 
 
 def main() -> int:
-    console = Console(width=110)
+    console = Console(width=110, record=True)
     run("sh", str(EMULATION / "build.sh"), str(OUT))
     semihosting = (
         "-semihosting-config",
@@ -119,7 +131,7 @@ def main() -> int:
         f"code of the kinematics in the linked program: {size} bytes (goal < {MOST_CODE})"
     )
     console.print(f"largest stack frame: {frame} bytes, in {where.split('(')[0]}")
-    console.print(f"called from outside: {' '.join(sorted(called_symbols()))}")
+    console.print(f"nm -u, of the core's archive: {' '.join(sorted(called_symbols()))}")
     if size >= MOST_CODE:
         failures.append(f"the kinematics take {size} bytes, the goal is below {MOST_CODE}")
     if strangers := called_symbols() - allowed_symbols():
@@ -129,6 +141,10 @@ def main() -> int:
     failures += firmware_application.check(console, allowed_symbols())
     for failure in failures:
         console.print(f"[red]{failure}[/red]")
+    if not failures:
+        lines = (line.rstrip() for line in console.export_text().strip("\n").splitlines())
+        PAGE.write_text(HEAD + "\n".join(lines) + "\n```\n", encoding="utf-8")
+        console.print(f"written: {PAGE.relative_to(ROOT)}")
     return 1 if failures else 0
 
 

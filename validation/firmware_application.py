@@ -103,12 +103,14 @@ def called_symbols() -> set[str]:
 def check_image(console: Console, allowed: set[str]) -> list[str]:
     """Size, stack frames and symbols."""
     flash, ram = image_size()
+    size = run("arm-none-eabi-size", "image.elf", cwd=OUT)
+    console.print(f"\narm-none-eabi-size image.elf\n{size.rstrip()}", highlight=False)
     console.print(f"flash of the whole image: {flash} bytes (goal <= {MOST_FLASH})")
     console.print(f"RAM without stack: {ram} bytes (goal <= {MOST_RAM})")
     largest = max(frames_of_the_stack())
     console.print(f"largest stack frame: {largest[0]} bytes, at {largest[2]}")
     strangers = called_symbols() - allowed
-    console.print(f"called from outside: {' '.join(sorted(called_symbols()))}")
+    console.print(f"nm -u, of the application's archive: {' '.join(sorted(called_symbols()))}")
     failures = [
         f"{name}: its frame is {kind}"
         for _, kind, name in frames_of_the_stack()
