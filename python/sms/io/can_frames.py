@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping
+from array import array
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import cantools.database
 import numpy as np
 from cantools.database.can import Database, Message, Signal
+from numpy.typing import NDArray
 
 from sms import _core
+from sms.io.can_decode import Array, Payloads
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Remark
 from sms.io.units import split_column_name
@@ -52,12 +54,46 @@ class Channel:
 
 @dataclass
 class Frames:
-    """What a log holds of one message."""
+    """What a log holds of one message. Arrays (frames,)."""
 
-    times: list[float] = field(default_factory=list)  #: of the logger, s, from its first frame on
-    stamps: list[float] = field(default_factory=list)  #: of the sender, s, where it sends them
-    numbers: list[int] = field(default_factory=list)  #: place in the log, from 1
-    values: dict[str, list[float]] = field(default_factory=dict)
+    times: Array  #: of the logger, s, from its first frame on
+    stamps: Array  #: of the sender, s, where it sends them; else empty
+    numbers: NDArray[np.int64]  #: place in the log, from 1
+    values: dict[str, Array]
+
+
+@dataclass
+class _Kept:
+    """Frames of one message as they are read: packed, because there may be millions."""
+
+    message: Message
+    times: array[float] = field(default_factory=lambda: array("d"))
+    numbers: array[int] = field(default_factory=lambda: array("q"))
+    octets: bytearray = field(default_factory=bytearray)
+    unfit: array[int] = field(default_factory=lambda: array("q"))  #: numbers of those too short
+
+    def take(self, time: float, number: int, data: bytearray) -> None:
+        """One frame."""
+        length = self.message.length
+        if len(data) < length:
+            self.unfit.append(number)
+            return
+        self.times.append(time)
+        self.numbers.append(number)
+        self.octets += data[:length]
+
+    def decoded(self, wanted: Iterable[str]) -> Frames:
+        """The wanted signals and the sender's clock; `unfit` grows by what the DBC does not describe."""
+        length = self.message.length
+        octets = np.frombuffer(self.octets, np.uint8).reshape(len(self.times), length)
+        numbers = np.array(self.numbers, dtype=np.int64)
+        fits = Payloads(self.message, octets).fit()
+        self.unfit.extend(numbers[~fits].tolist())
+        payloads = Payloads(self.message, octets[fits])
+        signals = {signal.name: signal for signal in self.message.signals}
+        stamps = payloads.column(signals[CLOCK]) if CLOCK in signals else np.array([])
+        values = {name: payloads.column(signals[name]) for name in wanted}
+        return Frames(np.array(self.times)[fits], stamps, numbers[fits], values)
 
 
 def no_value(signal: Signal, value: object) -> bool:
@@ -66,6 +102,15 @@ def no_value(signal: Signal, value: object) -> bool:
         return False
     margin = 0.5 * abs(float(signal.scale))
     return not float(signal.minimum) - margin <= value <= float(signal.maximum) + margin
+
+
+def lacks_value(signal: Signal, column: Array) -> NDArray[np.bool_]:
+    """`no_value` of many decoded values (frames,), NaN among them."""
+    if signal.minimum is None or signal.maximum is None:
+        return np.zeros(column.shape, dtype=np.bool_)
+    margin = 0.5 * abs(float(signal.scale))
+    inside = (column >= float(signal.minimum) - margin) & (column <= float(signal.maximum) + margin)
+    return np.asarray(~inside)
 
 
 def find_channel(database: Database, column: str) -> Channel | None:
@@ -112,46 +157,31 @@ def collect(
     file: Path, database: Database, channels: Mapping[str, Channel], remarks: list[Remark]
 ) -> dict[int, Frames]:
     """The frames of the wanted messages and of those with a clock, decoded, by identifier."""
-    wanted: dict[int, Frames] = {
-        m.frame_id: Frames() for m in database.messages if any(s.name == CLOCK for s in m.signals)
+    kept = {
+        m.frame_id: _Kept(m) for m in database.messages if any(s.name == CLOCK for s in m.signals)
     }
+    signals: dict[int, list[str]] = {}
     for channel in channels.values():
-        frames = wanted.setdefault(channel.message.frame_id, Frames())
-        frames.values[channel.signal.name] = []
-    messages = {number: database.get_message_by_frame_id(number) for number in wanted}
+        kept.setdefault(channel.message.frame_id, _Kept(channel.message))
+        signals.setdefault(channel.message.frame_id, []).append(channel.signal.name)
     start: float | None = None
-    unfit: Counter[str] = Counter()
-    first: dict[str, int] = {}
+    broken: list[int] = []
     for number, frame in enumerate(read_frames(file), 1):
         start = frame.timestamp if start is None else start
         if frame.is_error_frame:
-            unfit[""] += 1
-            first.setdefault("", number)
-            continue
-        message = messages.get(frame.arbitration_id)
-        if message is None or frame.is_remote_frame:
-            continue
-        try:
-            decoded = message.decode_simple(bytes(frame.data), decode_choices=False)
-        except Exception:  # cantools: DecodeError and its relatives
-            unfit[message.name] += 1
-            first.setdefault(message.name, number)
-            continue
-        into = wanted[frame.arbitration_id]
-        into.times.append(frame.timestamp - start)
-        into.numbers.append(number)
-        if isinstance(stamp := decoded.get(CLOCK), (int, float)):
-            into.stamps.append(float(stamp))
-        for name, values in into.values.items():
-            value = decoded.get(name)  # absent: another frame of a multiplexed message
-            values.append(float(value) if isinstance(value, (int, float)) else np.nan)
+            broken.append(number)
+        elif (into := kept.get(frame.arbitration_id)) is not None and not frame.is_remote_frame:
+            into.take(frame.timestamp - start, number, frame.data)
     if start is None:
         raise InputError(f"{file}: there is no frame in this log; record it again")
-    for name, count in unfit.items():
-        if name:
-            what = f"{count} frames of '{name}' do not fit the DBC and were left out"
-            remarks.append(Remark(first[name], None, what, "check that it is the DBC of this bus"))
-        else:
-            what = f"{count} error frames stand in the log"
-            remarks.append(Remark(first[name], None, what, "check bit rate, termination and cable"))
-    return wanted
+    frames = {number: k.decoded(signals.get(number, ())) for number, k in kept.items()}
+    if broken:
+        what = f"{len(broken)} error frames stand in the log"
+        remarks.append(Remark(broken[0], None, what, "check bit rate, termination and cable"))
+    for k in kept.values():
+        if k.unfit:
+            what = (
+                f"{len(k.unfit)} frames of '{k.message.name}' do not fit the DBC and were left out"
+            )
+            remarks.append(Remark(min(k.unfit), None, what, "check that it is the DBC of this bus"))
+    return frames

@@ -35,8 +35,8 @@ from sms.io.can_frames import (
     Frames,
     collect,
     find_channels,
+    lacks_value,
     load_dbc,
-    no_value,
 )
 from sms.io.errors import InputError
 from sms.io.tables import Remark, Table
@@ -117,7 +117,7 @@ def _unwrapped(stamps: Array, seen: Array, wrap: float) -> Array:
 
 def _clock(database: Database, per_message: dict[int, Frames], remarks: list[Remark]) -> Clock:
     """All readings in the order in which the logger saw them; each message's are unwrapped."""
-    stamped = {number: frames for number, frames in per_message.items() if frames.stamps}
+    stamped = {n: frames for n, frames in per_message.items() if frames.stamps.size}
     if not stamped:
         return Clock(np.array([]), np.array([]))
     signal = database.get_message_by_frame_id(next(iter(stamped))).get_signal_by_name(CLOCK)
@@ -136,7 +136,7 @@ def _clock(database: Database, per_message: dict[int, Frames], remarks: list[Rem
     begin = 0
     for frames in stamped.values():
         end = begin + len(frames.times)
-        frames.stamps = list(readings[begin:end])
+        frames.stamps = readings[begin:end]
         begin = end
     order = np.argsort(seen, kind="stable")
     return Clock(seen[order], readings[order])
@@ -154,9 +154,9 @@ class Series:
 
 def _in_order(frames: Frames, clock: Clock, message: Message, remarks: list[Remark]) -> Series:
     """Sorted by time; of frames with the same time the first is kept; both are remarked."""
-    stamped = len(frames.stamps) > 0
-    times = np.array(frames.stamps) if stamped else clock.time(np.array(frames.times))
-    numbers = np.array(frames.numbers, dtype=np.int64)
+    stamped = frames.stamps.size > 0
+    times = frames.stamps if stamped else clock.time(frames.times)
+    numbers = frames.numbers
     order = np.argsort(times, kind="stable")
     back = np.flatnonzero(np.diff(times) < 0.0)
     if back.size:
@@ -169,7 +169,7 @@ def _in_order(frames: Frames, clock: Clock, message: Message, remarks: list[Rema
             Remark(None, None, what + "; the first of each was kept", "check the logger")
         )
     _remark_gaps(times[kept], numbers[kept], message, remarks)
-    values = {name: np.array(v)[kept] for name, v in frames.values.items()}
+    values = {name: column[kept] for name, column in frames.values.items()}
     for name, column in values.items():
         _drop_out_of_range(message.get_signal_by_name(name), column, numbers[kept], remarks)
     return Series(stamped, times[kept], numbers[kept], values)
@@ -179,7 +179,9 @@ def _drop_out_of_range(
     signal: Signal, column: Array, numbers: NDArray[np.int64], remarks: list[Remark]
 ) -> None:
     """Make values outside the DBC's range NaN; remark when there are others too."""
-    lacking = np.array([no_value(signal, value) for value in column], dtype=bool)
+    lacking = lacks_value(signal, column)
+    if signal.multiplexer_signal is not None:  # what another frame holds is not lacking here
+        lacking &= np.isfinite(column)
     column[lacking] = np.nan
     count = np.count_nonzero(lacking)
     if 0 < count < column.size:
