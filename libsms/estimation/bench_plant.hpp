@@ -2,22 +2,10 @@
 //
 // A window starts with what is free: extension, velocity, both pressures, the reservoir's pressure and the deflection of
 // the seals. The spool needs none of it: it follows the command alone, and is run up over the 50 ms before the window.
-//
-// The step. Friction inside its ramp is stiff (38 N over 5 mm/s on 3.6 kg: 0.3 ms), and so are a chamber that is nearly
-// closed and the contact at an end. A Rosenbrock method of second order with an approximate Jacobian A (ROS2; Verwer,
-// Spee, Blom and Hundsdorfer 1999) stays stable there and keeps its order whatever A is:
-//
-//   (I - gamma h A) k1 = f(t, y)
-//   (I - gamma h A) k2 = f(t + h, y + h k1) - 2 k1,      y + h (3 k1 + k2) / 2,      gamma = 1 - 1/sqrt(2)
-//
-// A has the slope of friction and contact for (x, v), and a chamber's flow over its pressure difference for each pressure.
 #pragma once
 
-#include "estimation/recorded.hpp"
+#include "estimation/actuator_step.hpp"
 #include "estimation/shooting.hpp"
-#include "sms/bench.hpp"
-#include "sms/integrate.hpp"
-#include "sms/sensor.hpp"
 
 namespace sms {
 namespace estimation {
@@ -43,6 +31,8 @@ struct BenchNoise {
 
 class BenchPlant {
  public:
+  template <typename S>
+  using Machine = Params<S>;
   static constexpr int kStart = 6;   // x, v, p_a, p_b, p_R, z
   static constexpr int kHidden = 3;  // force, N; mass flow into the lower and into the upper chamber, kg/s
 
@@ -77,97 +67,6 @@ class BenchPlant {
   ActuatorLaws laws_;
   double longest_step_;
 };
-
-namespace detail {
-
-// A quantity that follows `now` with a lag of first order, a time h later; in between `now` runs straight to `then`.
-template <typename S>
-S lagging(const S& late, const S& now, const S& then, const S& lag, const S& h) {
-  using std::exp;
-  const S behind = lag * (then - now) / h;
-  return lag > S(0) ? S(then - behind + (late - now + behind) * exp(-h / lag)) : S(then - behind);
-}
-
-// Friction that deviates from its law, by the difference of force it makes. Presliding: the seals carry a share by
-// their deformation. friction_lag: viscous friction follows the speed of the lubricant's film, which is late.
-template <typename S>
-void add_seal_effects(const Bench<S>& bench, const BenchState<S>& state, const BenchTerms<S>& t, const S& film,
-                      BenchState<S>& rate) {
-  const Params<S>& p = bench.params;
-  if (!is_absent(p.presliding_share)) {
-    const BristleFriction<S> bristle = lugre_friction(p, t.actuator.piston, state.actuator.deflection);
-    rate.velocity -= p.presliding_share * (bristle.force - t.balance.friction) / p.moving_mass;
-    rate.actuator.deflection = bristle.deflection_rate;
-  }
-  if (!is_absent(p.friction_lag)) {
-    rate.velocity += p.viscous_friction * (state.velocity - film) / p.moving_mass;
-  }
-}
-
-// A of the step.
-template <typename S>
-struct BenchStiffness {
-  S motion_position;  // d v'/d x
-  S motion_velocity;  // d v'/d v
-  S lower;            // d p_a'/d p_a
-  S upper;
-  S reservoir;
-  S deflection;
-};
-
-template <typename S>
-BenchStiffness<S> bench_stiffness(const Bench<S>& bench, const BenchState<S>& state, const BenchTerms<S>& t) {
-  using std::abs;
-  using std::cos;
-  const Params<S>& p = bench.params;
-  const ActuatorTerms<S>& a = t.actuator;
-  const S speed = abs(state.velocity);
-  S damping = p.viscous_friction;
-  if (bench.laws.friction != FrictionLaw::dahl && bench.laws.friction != FrictionLaw::lugre &&
-      speed < p.stiction_velocity) {
-    const S steep = S(1.5707963267948966) / p.stiction_velocity;
-    damping += p.coulomb_force * steep * cos(steep * speed);
-  } else if (bench.laws.friction == FrictionLaw::lugre) {
-    damping += p.bristle_damping;
-  }
-  const bool contact = state.extension < S(0) || state.extension > p.stroke;
-  if (contact) {
-    damping += p.end_stop_stiffness * p.end_stop_damping * S(1e-4);
-  }
-  const S air = p.compression_heat_ratio * p.gas_constant * p.air_temperature;
-  const Gas<S>&lower = a.ports.lower, &upper = a.ports.upper, &outside = a.ports.exhaust, &supply = a.ports.supply;
-  const S feed_lower = secant(a.edge.supply_lower, supply.pressure, lower.pressure);
-  const S feed_upper = secant(a.edge.supply_upper, supply.pressure, upper.pressure);
-  const S vent_lower = secant(a.edge.lower_exhaust, lower.pressure, outside.pressure);
-  const S vent_upper = secant(a.edge.upper_exhaust, upper.pressure, outside.pressure);
-  BenchStiffness<S> s;
-  s.motion_position = contact ? S(-(p.end_stop_stiffness / p.moving_mass)) : S(0);
-  s.motion_velocity = -(damping / p.moving_mass);
-  s.lower = -(air / a.lower.volume * (feed_lower + vent_lower));
-  s.upper = -(air / a.upper.volume * (feed_upper + vent_upper));
-  s.reservoir = p.supply_line_resistance > S(0)
-                    ? S(-(air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed_lower + feed_upper)))
-                    : S(0);
-  s.deflection =
-      bench.laws.friction == FrictionLaw::lugre || bench.laws.friction == FrictionLaw::dahl || p.presliding_share > S(0)
-          ? S(-(speed * p.bristle_stiffness / p.coulomb_force))
-          : S(0);
-  return s;
-}
-
-// k with (I - g A) k = rate
-template <typename S>
-void solve_stiff(const BenchStiffness<S>& s, const S& g, BenchState<S>& rate) {
-  rate.velocity = (rate.velocity + g * s.motion_position * rate.extension) /
-                  (S(1) - g * s.motion_velocity - g * g * s.motion_position);
-  rate.extension = rate.extension + (s.motion_position < S(0) ? S(g * rate.velocity) : S(0));
-  rate.actuator.lower.pressure /= S(1) - g * s.lower;
-  rate.actuator.upper.pressure /= S(1) - g * s.upper;
-  rate.actuator.supply_pressure /= S(1) - g * s.reservoir;
-  rate.actuator.deflection /= S(1) - g * s.deflection;
-}
-
-}  // namespace detail
 
 template <typename S>
 S* BenchPlant::readings(const Params<S>& p, const BenchRecord& record, int sample, const BenchState<S>& state,
@@ -220,17 +119,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   state.actuator.supply_pressure = droops ? start[4] : p.supply_pressure;
   state.actuator.deflection = start[5];
 
-  // The spool: 50 ms of the command before the window.
-  const int run_up = static_cast<int>(0.05 / value_of(h)) + 1;
-  Lag<S> spool{detail::command_at<S>(record.command, S(window.first - double(run_up) / steps) - late), S(0)};
-  for (int i = -run_up; i < 0; ++i) {
-    const S at = S(window.first + double(i) / steps) - late;
-    const Lag<S> k1 = spool_rate(p, spool, detail::command_at<S>(record.command, at));
-    const Lag<S> moved{spool.value + h * k1.value, spool.rate + h * k1.rate};
-    const Lag<S> k2 = spool_rate(p, moved, detail::command_at<S>(record.command, at + S(1.0 / steps)));
-    spool = {spool.value + S(0.5) * h * (k1.value + k2.value), spool.rate + S(0.5) * h * (k1.rate + k2.rate)};
-  }
-  state.actuator.spool = spool;
+  state.actuator.spool = detail::spool_at(p, record.command, window.first, steps, h, late);
 
   BenchTerms<S> t;
   BenchState<S> k1, k2, moved;
@@ -247,7 +136,9 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   const auto rates = [&](double at, const BenchState<S>& y, const S& film, BenchState<S>& rate) {
     const BenchInput<S> input{detail::command_at<S>(record.command, S(window.first + at) - late), S(0)};
     derivative(bench, y, input, t, rate);
-    detail::add_seal_effects(bench, y, t, film, rate);
+    rate.velocity -= detail::seal_deviation(p, t.actuator.piston, t.balance.friction, y.actuator.deflection, film,
+                                            &rate.actuator.deflection) /
+                     p.moving_mass;
     push(at, rate);
   };
   const bool film_is_late = !is_absent(p.friction_lag);
@@ -255,7 +146,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   const auto film_at = [&](const S& speed) {
     return film_is_late ? detail::lagging(film, state.velocity, speed, p.friction_lag, h) : speed;
   };
-  const S g = S(0.29289321881345254) * h;
+  const S g = S(detail::kStiffShare) * h;
   const auto x = vector_of(state);
   for (int k = 0;; ++k) {
     rates(k, state, film, k1);
@@ -267,7 +158,8 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
       if (i > 0) {
         rates(k + double(i) / steps, state, film, k1);
       }
-      const detail::BenchStiffness<S> stiff = detail::bench_stiffness(bench, state, t);
+      const detail::ActuatorStiffness<S> stiff =
+          detail::actuator_stiffness(p, laws_.friction, p.moving_mass, t.actuator);
       detail::solve_stiff(stiff, g, k1);
       vector_of(moved) = x + h * vector_of(k1);
       rates(k + double(i + 1) / steps, moved, film_at(moved.velocity), k2);

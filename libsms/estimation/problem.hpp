@@ -15,18 +15,22 @@ namespace estimation {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-class Problem {
+// Machine: the parameters of what is simulated, Params<double> or more than that (leg_params.hpp).
+template <typename Machine>
+class ProblemOf {
  public:
-  virtual ~Problem() = default;
+  virtual ~ProblemOf() = default;
 
   // Number of residuals, over all records.
   virtual int rows() const = 0;
 
   // residual (rows): predicted reading minus measured reading, in the unit of the measured signal.
   // jacobian (rows x free.size()), or nullptr: its exact derivatives against the parameters free[k] (ParamIndex).
-  virtual void evaluate(const Params<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,
+  virtual void evaluate(const Machine& params, const std::vector<int>& free, Eigen::VectorXd* residual,
                         RowMatrix* jacobian) const = 0;
 };
+
+using Problem = ProblemOf<Params<double>>;
 
 }  // namespace estimation
 }  // namespace sms

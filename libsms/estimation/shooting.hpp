@@ -23,8 +23,8 @@
 // is the natural block of whatever is resampled.
 //
 // A plant is a class with
-//   using Start                                        fixed-size array of the free numbers of an initial state
-//   template <S> void simulate(const Params<S>&, const Window&, const S* start, S* residual) const
+//   template <S> using Machine                          its parameters: Params<S>, or more than that (leg_params.hpp)
+//   template <S> void simulate(const Machine<S>&, const Window&, const S* start, S* residual) const
 //   int channels(record), start_scale(k)
 #pragma once
 
@@ -61,8 +61,11 @@ struct WindowOptions {
 };
 
 template <typename Plant>
-class ShootingProblem : public Problem {
+class ShootingProblem : public ProblemOf<typename Plant::template Machine<double>> {
  public:
+  template <typename S>
+  using Machine = typename Plant::template Machine<S>;
+
   ShootingProblem(Plant plant, const WindowOptions& options) : plant_(std::move(plant)), options_(options) {
     for (int record = 0; record < plant_.records(); ++record) {
       const int skipped = std::min(plant_.samples(record) / 2, static_cast<int>(options.run_up / plant_.step(record)));
@@ -82,7 +85,7 @@ class ShootingProblem : public Problem {
   int rows() const override { return rows_; }
   const std::vector<Window>& windows() const { return windows_; }
 
-  void evaluate(const Params<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,
+  void evaluate(const Machine<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,
                 RowMatrix* jacobian) const override {
     residual->resize(rows_);
     if (jacobian != nullptr) {
@@ -99,7 +102,7 @@ class ShootingProblem : public Problem {
   }
 
   // Residuals before the projection, at the best initial states: predicted less measured, over the noise.
-  Eigen::VectorXd errors(const Params<double>& params) const {
+  Eigen::VectorXd errors(const Machine<double>& params) const {
     Eigen::VectorXd out(rows_);
     in_parallel(
         [&](std::size_t k) { out.segment(windows_[k].row, windows_[k].rows) = shoot(params, windows_[k]).residual; });
@@ -107,14 +110,14 @@ class ShootingProblem : public Problem {
   }
 
   // The best initial states at `params` become where later searches begin.
-  void settle(const Params<double>& params) {
+  void settle(const Machine<double>& params) {
     in_parallel([&](std::size_t k) { windows_[k].start = search(params, windows_[k]).start; });
   }
 
   // Derivatives of the projected residuals against inputs that are hidden in the plant's equations: each of
   // Plant::kHidden inputs has `knots` values per window, linear in between. Row block by row block:
   // (rows x kHidden * knots), a window's rows belonging to its own knots.
-  RowMatrix hidden(const Params<double>& params, int knots) const {
+  RowMatrix hidden(const Machine<double>& params, int knots) const {
     RowMatrix out(rows_, Plant::kHidden * knots);
     in_parallel(
         [&](std::size_t k) { differentiate_hidden(params, knots, windows_[k], shoot(params, windows_[k]), &out); });
@@ -159,7 +162,7 @@ class ShootingProblem : public Problem {
   }
 
   // Simulates with derivatives against the initial state.
-  void with_start(const Params<StartJet>& params, const Window& w, const Eigen::VectorXd& start,
+  void with_start(const Machine<StartJet>& params, const Window& w, const Eigen::VectorXd& start,
                   std::vector<StartJet>* jets, Eigen::VectorXd* residual, StartMatrix* by_start) const {
     StartJet z[kStart];
     for (int k = 0; k < kStart; ++k) {
@@ -174,10 +177,10 @@ class ShootingProblem : public Problem {
   }
 
   // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
-  Shot shoot(const Params<double>& params, const Window& w) const {
+  Shot shoot(const Machine<double>& params, const Window& w) const {
     using Normal = Eigen::Matrix<double, kStart, kStart>;
     constexpr int kMostSteps = 12;
-    const Params<StartJet> cast_params = cast<StartJet>(params);
+    const Machine<StartJet> cast_params = cast<StartJet>(params);
     std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
     Shot shot{w.start, Eigen::VectorXd(w.rows), {}};
     StartMatrix by_start(w.rows, kStart), tried_by_start(w.rows, kStart);
@@ -227,7 +230,7 @@ class ShootingProblem : public Problem {
 
   // The better of two searches. One that begins where parameters far away have left it may end in a valley of its own,
   // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too.
-  Shot search(const Params<double>& params, const Window& w) const {
+  Shot search(const Machine<double>& params, const Window& w) const {
     Shot shot = shoot(params, w);
     if (shot.residual.squaredNorm() > 4.0 * w.rows) {
       Window anew = w;
@@ -238,7 +241,7 @@ class ShootingProblem : public Problem {
     return shot;
   }
 
-  void differentiate(const Params<double>& params, const std::vector<int>& free, const Window& w, const Shot& shot,
+  void differentiate(const Machine<double>& params, const std::vector<int>& free, const Window& w, const Shot& shot,
                      RowMatrix* jacobian) const {
     std::vector<Jet> jets(static_cast<std::size_t>(w.rows));
     Eigen::MatrixXd columns(w.rows, kWidth);
@@ -249,7 +252,7 @@ class ShootingProblem : public Problem {
     const int all = static_cast<int>(free.size());
     for (int first = 0; first < all; first += kWidth) {
       const int width = std::min(kWidth, all - first);
-      Params<Jet> seeded = cast<Jet>(params);
+      Machine<Jet> seeded = cast<Jet>(params);
       for (int k = 0; k < width; ++k) {
         param(seeded, free[static_cast<std::size_t>(first + k)]).v[k] = 1.0;
       }
@@ -261,11 +264,11 @@ class ShootingProblem : public Problem {
     }
   }
 
-  void differentiate_hidden(const Params<double>& params, int knots, const Window& w, const Shot& shot,
+  void differentiate_hidden(const Machine<double>& params, int knots, const Window& w, const Shot& shot,
                             RowMatrix* out) const {
     std::vector<Jet> jets(static_cast<std::size_t>(w.rows));
     Eigen::MatrixXd columns(w.rows, kWidth);
-    const Params<Jet> plain = cast<Jet>(params);
+    const Machine<Jet> plain = cast<Jet>(params);
     Jet start[kStart];
     for (int k = 0; k < kStart; ++k) {
       start[k] = Jet(shot.start[k]);

@@ -37,6 +37,8 @@ struct TankNoise {
 
 class TankPlant {
  public:
+  template <typename S>
+  using Machine = Params<S>;
   static constexpr int kStart = 4;   // p, T, p_R, T_tc
   static constexpr int kHidden = 2;  // mass flow into the tank, kg/s; pressure at the head of the supply line, Pa
 

@@ -1,0 +1,56 @@
+// The parameters of a machine with three legs: what all have in common, and by how much one leg differs.
+//
+//   leg i has  common + shift_i
+//
+// A fit moves either: a leak of all three cylinders is `common`, a leak of the second alone `shift[1]`. Zero shifts leave
+// every leg as the common parameters say, to the bit.
+//
+// Index space: the parameters of all legs first, in the order of params.def, then those of leg 1, 2 and 3.
+#pragma once
+
+#include "sms/params.hpp"
+#include "sms/scalar.hpp"
+
+namespace sms {
+
+template <typename S>
+struct LegParams {
+  Params<S> common;
+  Params<S> shift[3];
+
+  explicit LegParams(const Params<S>& all = Params<S>()) : common(all) {
+    for (Params<S>& leg : shift) {
+#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) leg.name = S(0);
+#include "sms/params.def"
+    }
+  }
+};
+
+// leg: 0 for all three, 1 to 3 for one.
+constexpr int leg_param_index(int param, int leg) { return leg * param_count + param; }
+
+template <typename S>
+S& param(LegParams<S>& params, int index) {
+  const int leg = index / param_count;
+  return param(leg == 0 ? params.common : params.shift[leg - 1], index % param_count);
+}
+
+template <typename T, typename S>
+LegParams<T> cast(const LegParams<S>& from) {
+  LegParams<T> to(cast<T>(from.common));
+  for (int i = 0; i < 3; ++i) {
+    to.shift[i] = cast<T>(from.shift[i]);
+  }
+  return to;
+}
+
+// Leg i, from 0.
+template <typename S>
+Params<S> params_of_leg(const LegParams<S>& params, int i) {
+  Params<S> leg = params.common;
+#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) leg.name += params.shift[i].name;
+#include "sms/params.def"
+  return leg;
+}
+
+}  // namespace sms

@@ -1,0 +1,109 @@
+#include "estimation/platform_plant.hpp"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace sms {
+namespace estimation {
+namespace {
+
+constexpr double kSmooth = 0.025;  // s either way
+
+void check(const PlatformRecord& record, std::size_t number) {
+  const std::string name = "platform record " + std::to_string(number);
+  const Eigen::Index samples = record.command[0].size();
+  if (!(record.step > 0.0) || samples < 20) {
+    throw std::invalid_argument(name + ": a step of time above zero and 20 samples at least are needed");
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    detail::check_signal(name, "command", record.command[i], samples);
+    detail::check_signal(name, "extension", record.extension[i], samples);
+    detail::check_signal(name, "pressure_lower", record.pressure_lower[i], samples);
+    detail::check_signal(name, "pressure_upper", record.pressure_upper[i], samples);
+  }
+  if (record.supply_pressure.size() > 0) {
+    detail::check_signal(name, "supply_pressure", record.supply_pressure, samples);
+  }
+  if (record.roll.size() > 0 || record.pitch.size() > 0) {
+    detail::check_signal(name, "roll", record.roll, samples);
+    detail::check_signal(name, "pitch", record.pitch, samples);
+  }
+}
+
+// Value and slope of every sample, by a parabola through those around it.
+MeasuredMotion smoothed(const PlatformRecord& record) {
+  const int samples = static_cast<int>(record.extension[0].size());
+  const int half = std::max(2, static_cast<int>(kSmooth / record.step + 0.5));
+  const int count = std::min(samples, 2 * half + 1);
+  MeasuredMotion motion;
+  for (int k = 0; k < samples; ++k) {
+    const int first = std::min(std::max(k - half, 0), samples - count);
+    Eigen::MatrixX3d powers(count, 3);
+    for (int j = 0; j < count; ++j) {
+      const double t = (first + j - k) * record.step;
+      powers.row(j) << 1.0, t, t * t;
+    }
+    const Eigen::LDLT<Eigen::Matrix3d> normal = (powers.transpose() * powers).ldlt();
+    Vec3<double> extension, rate;
+    for (int i = 0; i < 3; ++i) {
+      const auto around = record.extension[static_cast<std::size_t>(i)].segment(first, count);
+      const Eigen::Vector3d fitted = normal.solve(powers.transpose() * around);
+      extension(i) = fitted[0];
+      rate(i) = fitted[1];
+    }
+    motion.extension.push_back(extension);
+    motion.rate.push_back(rate);
+  }
+  return motion;
+}
+
+}  // namespace
+
+PlatformPlant::PlatformPlant(std::vector<PlatformRecord> records, const PlatformNoise& noise, const ActuatorLaws& laws,
+                             MassModel masses, double longest_step)
+    : records_(std::move(records)), noise_(noise), laws_(laws), masses_(masses), longest_step_(longest_step) {
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    check(records_[i], i);
+    measured_.push_back(smoothed(records_[i]));
+  }
+}
+
+Eigen::VectorXd PlatformPlant::guess(int record, int first) const {
+  const PlatformRecord& r = of(record);
+  const int samples = std::max(8, static_cast<int>(0.05 / r.step));
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(kStart);
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t leg = static_cast<std::size_t>(i);
+    const Eigen::Vector2d motion = detail::beginning(r.extension[leg], first, samples, r.step);
+    start[i] = motion[0];
+    start[3 + i] = motion[1];
+    start[6 + i] = detail::beginning(r.pressure_lower[leg], first, samples, r.step)[0];
+    start[9 + i] = detail::beginning(r.pressure_upper[leg], first, samples, r.step)[0];
+    start[12 + i] = r.supply_pressure.size() > 0 ? r.supply_pressure[first] : 4e5;
+  }
+  return start;
+}
+
+MeasuredMotion PlatformPlant::motion(const Params<double> (&leg)[3], const Window& window) const {
+  const MeasuredMotion& all = measured_[static_cast<std::size_t>(window.record)];
+  const int last = static_cast<int>(all.extension.size()) - 1;
+  MeasuredMotion out;
+  out.extension.resize(static_cast<std::size_t>(window.samples));
+  out.rate.resize(out.extension.size());
+  for (int i = 0; i < 3; ++i) {
+    const Params<double>& p = leg[i];
+    const int late =
+        static_cast<int>(std::lround((p.clock_skew_extension + p.sensor_lag_extension) / step(window.record)));
+    for (int k = 0; k < window.samples; ++k) {
+      const std::size_t at = static_cast<std::size_t>(std::min(std::max(window.first + k + late, 0), last));
+      out.extension[static_cast<std::size_t>(k)](i) =
+          sensor_truth(all.extension[at](i), p.sensor_gain_extension, p.sensor_offset_extension);
+      out.rate[static_cast<std::size_t>(k)](i) = all.rate[at](i) / (1.0 + p.sensor_gain_extension);
+    }
+  }
+  return out;
+}
+
+}  // namespace estimation
+}  // namespace sms

@@ -1,0 +1,351 @@
+// The rig "platform" as a plant of shooting.hpp: three actuators under one mechanism, the commands, extensions and
+// chamber pressures of each measured, the supply and the attitude where there are sensors for them.
+//
+// The pistons carry the simulation: each is what it is on the bench, and the mechanism couples their accelerations along
+// the path on which they were measured (measured_path.hpp). A window starts with what is free: extension, velocity, both
+// pressures, the reservoir's pressure and the deflection of the seals, of each actuator.
+//
+// A parameter may belong to all three legs or to one (leg_params.hpp). The mechanism has no legs: it is made of the
+// common parameters.
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "estimation/actuator_step.hpp"
+#include "estimation/leg_params.hpp"
+#include "estimation/measured_path.hpp"
+#include "estimation/shooting.hpp"
+
+namespace sms {
+namespace estimation {
+
+// A signal of each leg.
+using LegSignals = std::array<Eigen::VectorXd, 3>;
+
+// One record, evenly sampled. Readings as they stand in the record; arrays of one length.
+struct PlatformRecord {
+  double step = 0.0;  // s
+  LegSignals command;
+  LegSignals extension;
+  LegSignals pressure_lower;
+  LegSignals pressure_upper;
+  Eigen::VectorXd supply_pressure;                 // of the first actuator's reservoir; empty: not measured
+  Eigen::VectorXd roll;                            // rad; roll and pitch empty: not measured
+  Eigen::VectorXd pitch;
+  std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
+};
+
+// Standard deviation of one sample.
+struct PlatformNoise {
+  Vec3<double> extension;
+  Vec3<double> pressure_lower;
+  Vec3<double> pressure_upper;
+  double supply_pressure;
+  Eigen::Vector2d attitude;
+};
+
+class PlatformPlant {
+ public:
+  template <typename S>
+  using Machine = LegParams<S>;
+  static constexpr int kStart = 18;  // three each of x, v, p_a, p_b, p_R, z
+  static constexpr int kHidden = 9;  // three each of force, N; mass flow into lower and into upper chamber, kg/s
+
+  // std::invalid_argument for arrays of different lengths, numbers that are not finite, extensions that are no pose.
+  PlatformPlant(std::vector<PlatformRecord> records, const PlatformNoise& noise, const ActuatorLaws& laws,
+                MassModel masses, double longest_step);
+
+  static double start_scale(int k) {
+    constexpr double scale[kStart / 3] = {5e-3, 0.3, 2e4, 2e4, 2e4, 1e-3};
+    return scale[k / 3];
+  }
+  int records() const { return static_cast<int>(records_.size()); }
+  int samples(int record) const { return static_cast<int>(of(record).command[0].size()); }
+  double step(int record) const { return of(record).step; }
+  int channels(int record) const {
+    return 9 + (of(record).supply_pressure.size() > 0 ? 1 : 0) + (of(record).roll.size() > 0 ? 2 : 0);
+  }
+  Eigen::VectorXd guess(int record, int first) const;
+
+  // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
+  template <typename S>
+  void simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
+                const S* hidden = nullptr, int knots = 0) const;
+
+ private:
+  template <typename S>
+  struct Pistons {
+    using Scalar = S;
+    BenchState<S> leg[3];
+  };
+  template <typename S>
+  static Vec3<S> speeds_of(const Pistons<S>& pistons) {
+    return {pistons.leg[0].velocity, pistons.leg[1].velocity, pistons.leg[2].velocity};
+  }
+  // Parameters of one run: of the mechanism, and of each leg.
+  template <typename S>
+  struct Machines {
+    Params<S> common;
+    Params<S> leg[3];
+  };
+  template <typename S>
+  struct PistonTerms {
+    ActuatorTerms<S> actuator[3];
+    Vec3<S> friction;
+    Vec3<S> along;  // accelerations of the pistons; the next balance begins there
+  };
+  // Hidden inputs of a window; values: nullptr where there are none.
+  template <typename S>
+  struct Hidden {
+    const S* values;
+    int knots;
+    int samples;
+
+    S at(int input, double sample) const { return detail::hidden_at(values + input * knots, knots, samples, sample); }
+  };
+
+  const PlatformRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
+
+  template <typename S>
+  static Machines<S> machines_of(LegParams<S> params, const PlatformRecord& record) {
+    for (const auto& condition : record.conditions) {
+      param(params.common, condition.first) += S(condition.second);
+    }
+    return {params.common, {params_of_leg(params, 0), params_of_leg(params, 1), params_of_leg(params, 2)}};
+  }
+
+  // What the position sensors would have read in the window were they good, by what the parameters say of them.
+  MeasuredMotion motion(const Params<double> (&leg)[3], const Window& window) const;
+
+  template <typename S>
+  void rates(const Machines<S>& machines, const PathPoint<S>& place, const Mat3<S>& leaning, const Pistons<S>& state,
+             const Vec3<S>& command, const Vec3<S>& film, const Hidden<S>& hidden, double at, PistonTerms<S>& t,
+             Pistons<S>& rate) const;
+
+  template <typename S>
+  S* readings(const Machines<S>& machines, const PlatformRecord& record, int sample, const PathPoint<S>& place,
+              const Pistons<S>& state, const Pistons<S>& rate, const PistonTerms<S>& t, S* out) const;
+
+  std::vector<PlatformRecord> records_;
+  std::vector<MeasuredMotion> measured_;  // one a record, smoothed
+  PlatformNoise noise_;
+  ActuatorLaws laws_;
+  MassModel masses_;
+  double longest_step_;
+};
+
+// The path between two samples.
+template <typename S>
+PathPoint<S> place_between(const std::vector<PathPoint<S>>& path, int sample, double part) {
+  const std::size_t k = static_cast<std::size_t>(sample);
+  PathPoint<S> place = path[k];
+  if (part > 0.0) {
+    vector_of(place) += S(part) * (vector_of(path[k + 1]) - vector_of(path[k]));
+  }
+  return place;
+}
+
+template <typename S>
+void PlatformPlant::rates(const Machines<S>& machines, const PathPoint<S>& place, const Mat3<S>& leaning,
+                          const Pistons<S>& state, const Vec3<S>& command, const Vec3<S>& film,
+                          const Hidden<S>& hidden, double at, PistonTerms<S>& t, Pistons<S>& rate) const {
+  Vec3<S> drive = place.load, aside, speed;
+  Piston<S> piston[3];
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = machines.leg[i];
+    const BenchState<S>& leg = state.leg[i];
+    ActuatorTerms<S>& a = t.actuator[i];
+    fill_chambers(p, laws_, leg.actuator, leg.extension, leg.velocity, a);
+    actuator_rates(p, laws_, leg.actuator, S(command(i)), a, rate.leg[i].actuator);
+    const S warm = p.gas_constant * p.air_temperature;
+    if (hidden.values != nullptr) {
+      drive(i) += hidden.at(i, at);
+      rate.leg[i].actuator.lower.pressure += hidden.at(3 + i, at) * warm / a.lower.volume;
+      rate.leg[i].actuator.upper.pressure += hidden.at(6 + i, at) * warm / a.upper.volume;
+    }
+    drive(i) += a.force;
+    piston[i] = a.piston;
+    aside(i) = leg.extension - place.extension(i);
+    speed(i) = leg.velocity;
+    rate.leg[i].extension = leg.velocity;
+    rate.leg[i].actuator.deflection = S(0);
+  }
+  drive += leaning * aside;
+  if (!is_absent(machines.common.panhard_friction)) {
+    drive -= machines.common.panhard_friction * (place.drag * speed);
+  }
+  if (depends_on_acceleration(laws_.friction)) {
+    coupled_accelerations<S>(machines.leg, laws_.friction, piston, place.mass, drive, t.along);
+    t.friction = drive - place.mass * t.along;
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      const ForceBalance<S> alone = force_balance<S>(machines.leg[i], laws_.friction, piston[i],
+                                                     state.leg[i].actuator.deflection, S(1), S(0));
+      t.friction(i) = alone.friction;
+      rate.leg[i].actuator.deflection = alone.deflection_rate;
+    }
+    t.along = solution<S>(place.mass, drive - t.friction);
+  }
+  Vec3<S> deviation;
+  bool deviates = false;
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = machines.leg[i];
+    deviates = deviates || !is_absent(p.presliding_share) || !is_absent(p.friction_lag);
+    deviation(i) = detail::seal_deviation<S>(p, piston[i], t.friction(i), state.leg[i].actuator.deflection, film(i),
+                                             &rate.leg[i].actuator.deflection);
+  }
+  Vec3<S> acceleration = t.along;
+  if (deviates) {
+    acceleration -= solution<S>(place.mass, deviation);
+  }
+  for (int i = 0; i < 3; ++i) {
+    rate.leg[i].velocity = acceleration(i);
+  }
+}
+
+template <typename S>
+S* PlatformPlant::readings(const Machines<S>& machines, const PlatformRecord& record, int sample,
+                           const PathPoint<S>& place, const Pistons<S>& state, const Pistons<S>& rate,
+                           const PistonTerms<S>& t, S* out) const {
+  const auto error = [sample](const S& predicted, const auto& measured, int samples, double noise) {
+    return detail::reading_error(predicted, measured, sample + samples, noise);
+  };
+  S rest;
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = machines.leg[i];
+    const BenchState<S>& leg = state.leg[i];
+    const int late = detail::whole_samples(record.step, p.clock_skew_extension, &rest);
+    // The sensor sits on the cylinder, and sees more of the rod where the frame yields below it.
+    const S seen = seen_extension<S>(p, leg.extension, leg.velocity, t.friction(i) - t.actuator[i].force);
+    const S x = late_reading<S>(seen, leg.velocity, rest + p.sensor_lag_extension);
+    *out++ = error(sensor_reading(x, p.sensor_gain_extension, p.sensor_offset_extension), record.extension[static_cast<std::size_t>(i)], late,
+                   noise_.extension(i));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = machines.leg[i];
+    const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
+    const S lower =
+        late_reading<S>(state.leg[i].actuator.lower.pressure, rate.leg[i].actuator.lower.pressure,
+                        rest + p.sensor_lag_chamber_pressure_lower);
+    *out++ = error(sensor_reading(lower, p.sensor_gain_chamber_pressure_lower, p.sensor_offset_chamber_pressure_lower),
+                   record.pressure_lower[static_cast<std::size_t>(i)], late, noise_.pressure_lower(i));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = machines.leg[i];
+    const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
+    const S upper =
+        late_reading<S>(state.leg[i].actuator.upper.pressure, rate.leg[i].actuator.upper.pressure,
+                        rest + p.sensor_lag_chamber_pressure_upper);
+    *out++ = error(sensor_reading(upper, p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper),
+                   record.pressure_upper[static_cast<std::size_t>(i)], late, noise_.pressure_upper(i));
+  }
+  const Params<S>& p = machines.common;
+  if (record.supply_pressure.size() > 0) {
+    *out++ = error(sensor_reading(state.leg[0].actuator.supply_pressure, p.sensor_gain_supply_pressure,
+                                  p.sensor_offset_supply_pressure),
+                   record.supply_pressure, 0, noise_.supply_pressure);
+  }
+  if (record.roll.size() > 0) {
+    Vec3<S> aside, speed;
+    for (int i = 0; i < 3; ++i) {
+      aside(i) = state.leg[i].extension - place.extension(i);
+      speed(i) = state.leg[i].velocity;
+    }
+    const Vec3<S> q = place.q + place.to_pose * aside, q_rate = place.to_pose * speed;
+    const int late = detail::whole_samples(record.step, p.clock_skew_attitude, &rest);
+    const S roll = late_reading<S>(q(0), q_rate(0), rest + p.sensor_lag_roll);
+    const S pitch = late_reading<S>(q(1), q_rate(1), rest + p.sensor_lag_pitch);
+    *out++ = error(sensor_reading(roll, p.sensor_gain_roll, p.sensor_offset_roll), record.roll, late,
+                   noise_.attitude(0));
+    *out++ = error(sensor_reading(pitch, p.sensor_gain_pitch, p.sensor_offset_pitch), record.pitch, late,
+                   noise_.attitude(1));
+  }
+  return out;
+}
+
+template <typename S>
+void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
+                             const S* hidden_values, int knots) const {
+  const PlatformRecord& record = of(window.record);
+  const Hidden<S> hidden{hidden_values, knots, window.samples};
+  const Machines<S> machines = machines_of(params, record);
+  const Params<double> plain[3] = {plain_params(machines.leg[0]), plain_params(machines.leg[1]),
+                                   plain_params(machines.leg[2])};
+  const MeasuredPath<S> path = measured_path_with_slopes(machines.common, masses_, motion(plain, window));
+  const int steps = std::max(1, static_cast<int>(std::ceil(record.step / longest_step_ - 1e-9)));
+  const S h(record.step / steps);
+  const S g = S(detail::kStiffShare) * h;
+
+  Pistons<S> state;
+  S late[3];
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = machines.leg[i];
+    late[i] = p.command_delay / S(record.step);
+    BenchState<S>& leg = state.leg[i];
+    leg = {start[i], start[3 + i], actuator_at_rest<S>(p, start[6 + i], start[9 + i])};
+    if (p.supply_line_resistance > S(0)) {
+      leg.actuator.supply_pressure = start[12 + i];
+    }
+    leg.actuator.deflection = start[15 + i];
+    leg.actuator.spool = detail::spool_at<S>(p, record.command[static_cast<std::size_t>(i)], window.first, steps, h, late[i]);
+  }
+
+  PistonTerms<S> t;
+  t.along.setZero();
+  Pistons<S> k1, k2, moved;
+  Vec3<S> film = speeds_of(state);
+  // The lubricant's films when the pistons have come to `then`, a step after `state`.
+  const auto films_at = [&](const Vec3<S>& then) {
+    Vec3<S> late_films = then;
+    for (int i = 0; i < 3; ++i) {
+      const S& lag = machines.leg[i].friction_lag;
+      if (!is_absent(lag)) {
+        late_films(i) = detail::lagging<S>(film(i), state.leg[i].velocity, then(i), lag, h);
+      }
+    }
+    return late_films;
+  };
+  const auto rates_at = [&](int sample, double part, const Pistons<S>& y, const Vec3<S>& films, Pistons<S>& rate) {
+    Vec3<S> command;
+    for (int i = 0; i < 3; ++i) {
+      command(i) = detail::command_at<S>(record.command[static_cast<std::size_t>(i)], S(window.first + sample + part) - late[i]);
+    }
+    rates<S>(machines, place_between<S>(path.points, sample, part), path.leaning, y, command, films, hidden,
+             sample + part, t, rate);
+  };
+  const auto x = vector_of(state);
+  for (int k = 0;; ++k) {
+    rates_at(k, 0.0, state, film, k1);
+    const PathPoint<S>& place = path.points[static_cast<std::size_t>(k)];
+    residual = readings<S>(machines, record, window.first + k, place, state, k1, t, residual);
+    if (k == window.samples - 1) {
+      return;
+    }
+    for (int step = 0; step < steps; ++step) {
+      const double begin = double(step) / steps;
+      if (step > 0) {
+        rates_at(k, begin, state, film, k1);
+      }
+      detail::ActuatorStiffness<S> stiff[3];
+      for (int i = 0; i < 3; ++i) {
+        stiff[i] = detail::actuator_stiffness<S>(machines.leg[i], laws_.friction, S(place.mass(i, i)), t.actuator[i]);
+        detail::solve_stiff(stiff[i], g, k1.leg[i]);
+      }
+      vector_of(moved) = x + h * vector_of(k1);
+      const bool last = step + 1 == steps;
+      rates_at(last ? k + 1 : k, last ? 0.0 : double(step + 1) / steps, moved, films_at(speeds_of(moved)), k2);
+      vector_of(k2) -= S(2) * vector_of(k1);
+      for (int i = 0; i < 3; ++i) {
+        detail::solve_stiff(stiff[i], g, k2.leg[i]);
+      }
+      vector_of(moved) = x + (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
+      film = films_at(speeds_of(moved));
+      state = moved;
+    }
+  }
+}
+
+}  // namespace estimation
+}  // namespace sms
