@@ -17,6 +17,7 @@ PYBIND11_MODULE(_core, m) {
   sms_python::bind_virtual_rig(m);
 #ifdef SMS_WITH_ESTIMATION
   sms_python::bind_estimation(m);
+  sms_python::bind_platform_problem(m);
   m.attr("has_estimation") = true;
 #else
   m.attr("has_estimation") = false;

@@ -13,12 +13,12 @@
 
 namespace sms {
 
+// Itself the common ones.
 template <typename S>
-struct LegParams {
-  Params<S> common;
+struct LegParams : Params<S> {
   Params<S> shift[3];
 
-  explicit LegParams(const Params<S>& all = Params<S>()) : common(all) {
+  explicit LegParams(const Params<S>& common = Params<S>()) : Params<S>(common) {
     for (Params<S>& leg : shift) {
 #define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) leg.name = S(0);
 #include "sms/params.def"
@@ -32,12 +32,14 @@ constexpr int leg_param_index(int param, int leg) { return leg * param_count + p
 template <typename S>
 S& param(LegParams<S>& params, int index) {
   const int leg = index / param_count;
-  return param(leg == 0 ? params.common : params.shift[leg - 1], index % param_count);
+  Params<S>& common = params;
+  return param(leg == 0 ? common : params.shift[leg - 1], index % param_count);
 }
 
 template <typename T, typename S>
 LegParams<T> cast(const LegParams<S>& from) {
-  LegParams<T> to(cast<T>(from.common));
+  const Params<S>& common = from;
+  LegParams<T> to(cast<T>(common));
   for (int i = 0; i < 3; ++i) {
     to.shift[i] = cast<T>(from.shift[i]);
   }
@@ -47,7 +49,7 @@ LegParams<T> cast(const LegParams<S>& from) {
 // Leg i, from 0.
 template <typename S>
 Params<S> params_of_leg(const LegParams<S>& params, int i) {
-  Params<S> leg = params.common;
+  Params<S> leg = params;
 #define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) leg.name += params.shift[i].name;
 #include "sms/params.def"
   return leg;

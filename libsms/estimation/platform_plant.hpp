@@ -111,9 +111,9 @@ class PlatformPlant {
   template <typename S>
   static Machines<S> machines_of(LegParams<S> params, const PlatformRecord& record) {
     for (const auto& condition : record.conditions) {
-      param(params.common, condition.first) += S(condition.second);
+      param(params, condition.first) += S(condition.second);
     }
-    return {params.common, {params_of_leg(params, 0), params_of_leg(params, 1), params_of_leg(params, 2)}};
+    return {params, {params_of_leg(params, 0), params_of_leg(params, 1), params_of_leg(params, 2)}};
   }
 
   // What the position sensors would have read in the window were they good, by what the parameters say of them.

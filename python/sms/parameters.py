@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from sms import _core
@@ -42,3 +42,37 @@ def _read_table() -> Mapping[str, Parameter]:
 
 PARAMETERS: Mapping[str, Parameter] = _read_table()
 """Every parameter of the model by its name, in the order of params.def."""
+
+
+# ---- machines with three legs ----------------------------------------------------------------------
+
+
+def common_parameter(name: str) -> str:
+    """ "coulomb_force:2", by how much that of leg 2 is larger, -> "coulomb_force", that of all legs."""
+    return name.partition(":")[0]
+
+
+def is_of_leg(name: str) -> bool:
+    """Whether a parameter is what one leg has more than all."""
+    return ":" in name
+
+
+def _of_legs() -> Mapping[str, Parameter]:
+    """What one leg has more: none, and within bounds in which the leg's own value keeps to those of params.def."""
+    more = {
+        f"{name}:{leg}": replace(
+            row,
+            name=f"{name}:{leg}",
+            lower=row.lower - row.default,
+            default=0.0,
+            upper=row.upper - row.default,
+            uncertainty=0.0,
+        )
+        for name, row in PARAMETERS.items()
+        for leg in (1, 2, 3)
+    }
+    return MappingProxyType(dict(PARAMETERS) | more)
+
+
+LEG_PARAMETERS: Mapping[str, Parameter] = _of_legs()
+"""The parameters of a machine with three legs: those of all, and those of each."""

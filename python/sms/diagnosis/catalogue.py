@@ -1,19 +1,21 @@
 """The effects that can be named: one hypothesis for each effect and each signal or part that it can sit on.
 
-catalogue.toml is that of a cylinder's force balance, catalogue_plant.toml that of tank, bench and platform.
+catalogue.toml is that of a cylinder's force balance, catalogue_plant.toml that of tank, bench and platform,
+catalogue_platform.toml what the platform has beyond it.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from typing import Any, Literal
 
 from sms.io.rig import Rig
-from sms.parameters import PARAMETERS
+from sms.io.signals import LEGS, without_leg
+from sms.parameters import PARAMETERS, common_parameter, is_of_leg
 
 SIGNALS_IN_WORDS = {
     "rod_force": "rod force",
@@ -59,19 +61,21 @@ class Effect:
         return self.id if self.signal is None else f"{self.id} of {self.signal}"
 
     def plausible_range(self, reference: float) -> tuple[float, float]:
-        """The plausible values of its parameter, SI; `reference` is the declared value."""
+        """The plausible values of its parameter, SI; `reference` is the declared value, that of all legs."""
         low, high = self.plausible
         if self.kind == "missing":
             return low, high
-        if self.absolute:
-            return reference + low, reference + high
-        return reference * (1.0 + low), reference * (1.0 + high)
+        if not self.absolute:
+            low, high = reference * low, reference * high
+        if is_of_leg(self.parameters[0]):
+            return low, high
+        return reference + low, reference + high
 
 
 def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
     of_sensor = "signals" in entry
     for place in entry.get("signals", entry.get("parts", [None])):
-        said = SIGNALS_IN_WORDS.get(place, place)
+        said = _said(place)
         text = {key: entry[key].format(signal=said, part=said) for key in ("title", "cause")}
         text |= {
             key: entry[key].format(signal=said, part=said) for key in ("signature", "separated_by")
@@ -80,7 +84,9 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
             id=entry["id"],
             signal=place,
             kind=entry["kind"],
-            parameters=tuple(p.format(signal=place, part=place) for p in entry["parameters"]),
+            parameters=tuple(
+                _of_leg(p.format(signal=place, part=place)) for p in entry["parameters"]
+            ),
             block=entry["block"],
             needs=tuple(entry["needs"]),
             plausible=(entry["plausible"][0], entry["plausible"][1]),
@@ -93,18 +99,51 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
         )
 
 
+def _said(place: str | None) -> str | None:
+    """ "extension_2" -> "position of leg 2"."""
+    if place is None or without_leg(place) == place:
+        return SIGNALS_IN_WORDS.get(place or "", place)
+    return f"{_said(without_leg(place))} of leg {place[-1]}"
+
+
+def _of_leg(parameter: str) -> str:
+    """The parameter of a leg's sensor: "sensor_gain_extension_2" -> "sensor_gain_extension:2"."""
+    common = without_leg(parameter)
+    return parameter if parameter in PARAMETERS else common + parameter[len(common) :].replace("_", ":")
+
+
+def _in_one_leg(effects: Sequence[Effect], ids: Sequence[str]) -> Iterable[Effect]:
+    """Each effect of these ids once more for every leg that may have it alone."""
+    for effect in effects:
+        for leg in LEGS if effect.id in ids else ():
+            yield replace(
+                effect,
+                signal=f"leg {leg}" if effect.signal is None else f"{effect.signal}, leg {leg}",
+                parameters=tuple(f"{p}:{leg}" for p in effect.parameters),
+                title=f"{effect.title}, in leg {leg}",
+            )
+
+
 @cache
 def catalogue(kind: str = "cylinder") -> tuple[Effect, ...]:
     """Every hypothesis for one kind of rig, in the order of the file. KeyError if one names an unknown parameter."""
     name = "catalogue.toml" if kind == "cylinder" else "catalogue_plant.toml"
-    text = files("sms.diagnosis").joinpath(name).read_text(encoding="utf-8")
-    entries = [e for e in tomllib.loads(text)["effect"] if kind in e.get("kinds", [kind])]
+    entries = [e for e in _read(name)["effect"] if kind in e.get("kinds", [kind])]
+    legs: Sequence[str] = ()
+    if kind == "platform":
+        more = _read("catalogue_platform.toml")
+        entries, legs = entries + more["effect"], more["legs"]
     effects = tuple(e for entry in entries for e in _effects(entry))
+    effects += tuple(_in_one_leg(effects, legs))
     for effect in effects:
         for parameter in effect.parameters:
-            if parameter not in PARAMETERS:
+            if common_parameter(parameter) not in PARAMETERS:
                 raise KeyError(f"{name}: {effect.id} names the unknown parameter {parameter}")
     return effects
+
+
+def _read(name: str) -> dict[str, Any]:
+    return tomllib.loads(files("sms.diagnosis").joinpath(name).read_text(encoding="utf-8"))
 
 
 def effects_of(rig: Rig) -> tuple[Effect, ...]:

@@ -10,6 +10,7 @@ from sms.diagnosis.kind import Run
 from sms.diagnosis.prepare import Comparison
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
+from sms.io.signals import without_leg
 
 LEVELS = 1.5
 """Ratio between the largest and the smallest mean pressure of the records."""
@@ -127,12 +128,22 @@ FAST_COMMAND = 5.0
 
 
 def motion(data: Runs, stroke: float) -> str:
-    moved = max(float(np.ptp(m.signals[_position_of(m)])) for m in data.motions)
+    moved = max(
+        float(np.ptp(values))
+        for m in data.motions
+        for n, values in m.signals.items()
+        if n == "tank_pressure" or without_leg(n) == "extension"
+    )
     return "" if moved > 0.0 else "nothing moves in the identify records"
 
 
-def _position_of(run: Run) -> str:
-    return next(n for n in ("extension", "extension_1", "tank_pressure") if n in run.signals)
+def _extensions(data: Runs) -> list[tuple[Run, str]]:
+    """Every piston's position in every run."""
+    return [(m, n) for m in data.motions for n in m.signals if without_leg(n) == "extension"]
+
+
+def _velocities(data: Runs) -> list[Array]:
+    return [m.rate(n) for m, n in _extensions(data)]
 
 
 def _commands(data: Runs) -> list[tuple[Run, Array]]:
@@ -157,22 +168,19 @@ def fast_commands(data: Runs, stroke: float) -> str:
 
 
 def reversals(data: Runs, stroke: float) -> str:
-    direction = data.inputs["direction"]
-    share = float(np.mean(direction > 0))
+    share = float(np.mean(np.concatenate(_velocities(data)) > 0.0))
     return "" if 0.05 < share < 0.95 else "the rod moves one way only; needed are reversals"
 
 
 def long_travel(data: Runs, stroke: float) -> str:
-    span = max(
-        float(np.ptp(m.signals["extension"])) for m in data.motions if "extension" in m.signals
-    )
+    span = max(float(np.ptp(m.signals[n])) for m, n in _extensions(data))
     if span >= TRAVEL * stroke:
         return ""
     return f"the rod moves over {1e3 * span:.1f} mm of {1e3 * stroke:.0f} mm only; needed is a quarter of the stroke"
 
 
 def fast_motion(data: Runs, stroke: float) -> str:
-    fastest = float(np.quantile(np.abs(data.inputs["velocity [m/s]"]), 0.999))
+    fastest = float(np.quantile(np.abs(np.concatenate(_velocities(data))), 0.999))
     if fastest >= FAST:
         return ""
     return f"the rod moves at {1e3 * fastest:.0f} mm/s at most; needed are {1e3 * FAST:.0f} mm/s"
@@ -180,7 +188,8 @@ def fast_motion(data: Runs, stroke: float) -> str:
 
 def accelerated(data: Runs, stroke: float) -> str:
     largest = max(
-        float(np.quantile(np.abs(np.gradient(m.velocity, m.step)), 0.99)) for m in data.motions
+        float(np.quantile(np.abs(np.gradient(m.rate(n), m.step)), 0.99))
+        for m, n in _extensions(data)
     )
     if largest >= ACCELERATION:
         return ""
@@ -190,9 +199,8 @@ def accelerated(data: Runs, stroke: float) -> str:
 def ends(data: Runs, stroke: float) -> str:
     cushion = data.rig.declared("cushion_length").value
     nearest = min(
-        min(float(m.signals["extension"].min()), stroke - float(m.signals["extension"].max()))
-        for m in data.motions
-        if "extension" in m.signals
+        min(float(m.signals[n].min()), stroke - float(m.signals[n].max()))
+        for m, n in _extensions(data)
     )
     if nearest < 0.8 * cushion:
         return ""

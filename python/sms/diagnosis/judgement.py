@@ -11,6 +11,7 @@ from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.diagnosis.result import Array
 from sms.diagnosis.search import SIGNIFICANT, Trial
 from sms.diagnosis.statistics import interval, resampled, sum_by, weighted_ms
+from sms.parameters import common_parameter
 from sms.units_display import format_quantity
 
 WORTH = 0.01
@@ -62,7 +63,7 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
         return trial.reason
     name = trial.effect.parameters[0]
     value = trial.fitted.params[name]
-    low, high = trial.effect.plausible_range(data.rig.declared(name).value)
+    low, high = trial.effect.plausible_range(data.rig.declared(common_parameter(name)).value)
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
     if not low <= value <= high:

@@ -10,6 +10,8 @@ of the missing term.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +21,7 @@ from sms.diagnosis.result import Array, Hidden, Shape
 from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import Nuisance
 from sms.diagnosis.statistics import Index, sum_by
+from sms.io.signals import LEGS
 
 KNOTS = 21
 """Points of time per window, 50 ms apart."""
@@ -43,7 +46,7 @@ class Basis:
 def signals_of(runs: Runs) -> dict[str, Array]:
     """What a hidden term may follow: (rows,) each."""
     wanted = runs.inputs
-    names = [n for n in wanted if n != "direction" and not n.startswith("supply")]
+    names = [n for n in wanted if not n.startswith(("direction", "supply", "setpoint"))]
     return {n: wanted[n] for n in names}
 
 
@@ -61,16 +64,37 @@ def points(values: Array) -> Array:
 def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis]:
     """Every equation with every signal, less what the free parameters can undo."""
     q = nuisance.basis()
+
+    def off(columns: Array) -> Array:
+        full = nuisance.with_declared(columns)
+        return thinned(runs, full - q @ (q.T @ full))
+
     hidden = runs.problem.hidden(params, KNOTS)
+    signals = signals_of(runs)
     found = []
-    for signal, values in signals_of(runs).items():
+    for signal, values in signals.items():
         at = points(values)
         if np.ptp(at) == 0.0:
             continue
         functions = hats(values, at)
         for equation, unit in equations_of(runs).items():
-            full = nuisance.with_declared(_columns(runs, hidden, equation, functions))
-            found.append(Basis(equation, signal, full - q @ (q.T @ full), at, unit))
+            if belong_together(equation.removeprefix("reading of "), signal):
+                columns = _columns(runs, hidden, equation, functions)
+                found.append(Basis(equation, signal, off(columns), at, unit))
+    for equation, numbers in alike(tuple(runs.kind.hidden)).items():
+        unit = list(runs.kind.hidden.values())[numbers[0]]
+        for signal, of_leg in alike_signals(signals).items():
+            at = points(np.concatenate(of_leg))
+            if np.ptp(at) == 0.0:
+                continue
+            columns = np.sum(
+                [
+                    _through_plant(runs, _of_input(hidden, number), hats(values, at))
+                    for number, values in zip(numbers, of_leg, strict=True)
+                ],
+                axis=0,
+            )
+            found.append(Basis(equation, signal, off(columns), at, unit))
     return found
 
 
@@ -84,8 +108,7 @@ def _columns(runs: Runs, hidden: Array, equation: str, functions: Array) -> Arra
     """(rows, pieces): footprint of a hidden term that follows functions (rows, pieces) of a signal."""
     equations = list(runs.kind.hidden)
     if equation in equations:
-        first = equations.index(equation) * KNOTS
-        return _through_plant(runs, hidden[:, first : first + KNOTS], functions)
+        return _through_plant(runs, _of_input(hidden, equations.index(equation)), functions)
     channel = equation.removeprefix("reading of ")
     here = runs.channel == runs.channels.index(channel)
     return _free_of_start(runs, functions * here[:, None] / runs.noise[channel])
@@ -98,6 +121,72 @@ def with_curve(runs: Runs, nuisance: Nuisance, params: _core.Params, shape: Shap
     full = nuisance.with_declared(columns @ np.array(shape.value))
     q = nuisance.basis()
     return np.asarray((full - q @ (q.T @ full))[: len(columns)])
+
+
+def _of_input(hidden: Array, number: int) -> Array:
+    return np.asarray(hidden[:, number * KNOTS : (number + 1) * KNOTS])
+
+
+# ---- machines with legs ----------------------------------------------------------------------------------
+
+_LEG = re.compile(r"(?: of leg |_)([123])(?= \[|$)")
+
+
+def leg_of(name: str) -> str:
+    """ "velocity_2 [m/s]", "force of leg 2" -> "2"; empty for what has no leg."""
+    found = _LEG.search(name)
+    return found[1] if found else ""
+
+
+def belong_together(equation: str, signal: str) -> bool:
+    """Whether a term of this equation may follow this signal: another leg's it does not."""
+    return not leg_of(signal) or leg_of(equation) == leg_of(signal)
+
+
+def alike(equations: Sequence[str]) -> dict[str, list[int]]:
+    """Equations that every leg has, as one for all legs: "force" -> where those of legs 1, 2, 3 stand."""
+    found: dict[str, list[int]] = {}
+    for number, equation in enumerate(equations):
+        if leg_of(equation):
+            found.setdefault(_LEG.sub("", equation), []).append(number)
+    return found
+
+
+def alike_signals(signals: Mapping[str, Array]) -> dict[str, list[Array]]:
+    """ "velocity [m/s]" -> that of each leg; what has no leg is the same for all."""
+    found: dict[str, list[Array]] = {}
+    for name, values in signals.items():
+        found.setdefault(_LEG.sub("", name), []).extend(
+            [values] * (1 if leg_of(name) else len(LEGS))
+        )
+    return found
+
+
+MOST_ROWS = 40_000
+"""Of a footprint: with more, neighbouring samples are added up."""
+
+
+def thinned(runs: Runs, columns: Array) -> Array:
+    """(rows + known, m) with sums of neighbouring samples in place of them, scaled so that noise stays what it is."""
+    every = thinning(runs)
+    if every == 1:
+        return columns
+    parts = []
+    for w in runs.problem.windows:
+        of_window = columns[w.row : w.row + w.rows].reshape(w.samples, -1, columns.shape[1])
+        firsts = np.arange(0, w.samples, every)
+        sums = np.add.reduceat(of_window, firsts, axis=0)
+        sizes = np.diff(np.append(firsts, w.samples))
+        parts.append((sums / np.sqrt(sizes)[:, None, None]).reshape(-1, columns.shape[1]))
+    return np.vstack([*parts, columns[runs.problem.rows :]])
+
+
+def thinning(runs: Runs) -> int:
+    """How many samples are added up."""
+    return -(-runs.problem.rows // MOST_ROWS)
+
+
+# ---- footprints ------------------------------------------------------------------------------------------
 
 
 def _through_plant(runs: Runs, hidden: Array, functions: Array) -> Array:
@@ -135,8 +224,8 @@ def localise(
 ) -> Hidden:
     """Shares of the equations and the shape of the missing term; excess is the chi-square that is not noise."""
     bases = bases_of(runs, nuisance, params)
-    full = np.concatenate([residual, nuisance.pull * nuisance.off])
-    blocks = np.concatenate([runs.block, np.full(len(nuisance.names), int(runs.block.max()) + 1)])
+    full = thinned(runs, np.concatenate([residual, nuisance.pull * nuisance.off])[:, None])[:, 0]
+    blocks = _blocks(runs, len(nuisance.names))
     taken = {(b.equation, b.signal): _taken(b.footprint, full) for b in bases}
     shares = {}
     for equation in dict.fromkeys(b.equation for b in bases):
@@ -154,6 +243,13 @@ def localise(
         {f"{e} over {s}": t / max(excess, 1e-12) for (e, s), t in taken.items()},
         _shape(best, full, blocks, taken[(best.equation, best.signal)] / max(excess, 1e-12)),
     )
+
+
+def _blocks(runs: Runs, known: int) -> Index:
+    """Which window a row of a footprint belongs to; what is declared is a block of its own."""
+    every, channels = thinning(runs), len(runs.channels)
+    rows = [-(-w.samples // every) * channels for w in runs.problem.windows]
+    return np.repeat(np.arange(len(rows) + 1), [*rows, known])
 
 
 def _solve(columns: Array, full: Array) -> tuple[Array, Array]:

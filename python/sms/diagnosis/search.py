@@ -29,6 +29,7 @@ from sms.diagnosis.screening import Screen, project, screen
 from sms.diagnosis.statistics import score_test
 from sms.diagnosis.visible import raw_columns
 from sms.io.rig import Rig
+from sms.parameters import common_parameter
 
 SIGNIFICANT = 0.01
 """Largest chance, over all candidates of a round together, of naming one on data without any effect."""
@@ -94,7 +95,7 @@ def screen_effects(
 def _allowed_signs(effect: Effect, current: Fitted, rig: Rig) -> tuple[bool, bool]:
     """Whether the effect's parameter may still fall, and rise."""
     name = effect.parameters[0]
-    low, high = effect.plausible_range(rig.declared(name).value)
+    low, high = effect.plausible_range(rig.declared(common_parameter(name)).value)
     low, high = max(low, rig.table[name].lower), min(high, rig.table[name].upper)
     return current.params[name] > low, current.params[name] < high
 

@@ -14,6 +14,7 @@ from sms.diagnosis.result import Array, NotTestable
 from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import columns_of, project
 from sms.diagnosis.statistics import covariance_of
+from sms.parameters import common_parameter
 from sms.units_display import format_quantity
 
 DETECTION = 3.0
@@ -83,7 +84,7 @@ def _why_blind(effect: Effect, fitted: Fitted, data: Data, raw: Array, column: A
             "their declared uncertainty"
         )
     name = effect.parameters[0]
-    low, high = effect.plausible_range(data.rig.declared(name).value)
+    low, high = effect.plausible_range(data.rig.declared(common_parameter(name)).value)
     covariance = covariance_of(column[:, None], fitted.fit.residual, data.identify.block)
     error = float(np.sqrt(covariance[0, 0]))
     if (

@@ -30,7 +30,7 @@ from sms.io.schema import (
 )
 from sms.io.signals import KINDS, SIGNAL_UNITS, column_name, is_pressure
 from sms.io.units import interval_to_si, to_si
-from sms.parameters import PARAMETERS, Parameter
+from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 
 Role = Literal["identify", "validate", "test"]
 
@@ -109,6 +109,8 @@ class Rig:
         """What is known of a parameter: from the file, else the default and its uncertainty."""
         if name in self.parameters:
             return self.parameters[name]
+        if is_of_leg(name) and name in self.table:
+            return Declaration(0.0, 0.0)
         if name not in PARAMETERS:
             raise KeyError(f"no parameter '{name}'; {did_you_mean(name, PARAMETERS)}")
         return Declaration(PARAMETERS[name].default, PARAMETERS[name].uncertainty)
@@ -116,11 +118,12 @@ class Rig:
     @property
     def table(self) -> Mapping[str, Parameter]:
         """Bounds and units of every parameter that the model has."""
-        return PARAMETERS
+        return LEG_PARAMETERS if self.kind == "platform" else PARAMETERS
 
     def start(self) -> _core.Params:
         """Every parameter as declared."""
-        return _core.Params(**{name: declared.value for name, declared in self.parameters.items()})
+        common = _core.Params(**{name: known.value for name, known in self.parameters.items()})
+        return _core.LegParams(common) if self.kind == "platform" else common
 
 
 def load_rig(path: str | os.PathLike[str]) -> Rig:

@@ -1,0 +1,131 @@
+// The rig "platform" held against records, and the parameters of a machine with three legs.
+#include <memory>
+
+#include "estimation/platform_plant.hpp"
+#include "shooting_problem.hpp"
+
+namespace sms_python {
+namespace {
+
+namespace est = sms::estimation;
+using LegParams = sms::LegParams<double>;
+using PlatformProblem = est::ShootingProblem<est::PlatformPlant>;
+
+// "chamber_leakage_lower" is that of all legs, "chamber_leakage_lower:2" what leg 2 has more.
+int leg_param_index(const std::string& name) {
+  const std::size_t colon = name.find(':');
+  if (colon == std::string::npos) {
+    return sms::leg_param_index(param_index(name), 0);
+  }
+  const std::string leg = name.substr(colon + 1);
+  if (leg != "1" && leg != "2" && leg != "3") {
+    throw py::key_error("'" + name + "' names no leg: there are :1, :2 and :3");
+  }
+  return sms::leg_param_index(param_index(name.substr(0, colon)), leg[0] - '0');
+}
+
+std::vector<Params> legs_of(const LegParams& params) {
+  return {sms::params_of_leg(params, 0), sms::params_of_leg(params, 1), sms::params_of_leg(params, 2)};
+}
+
+void bind_leg_params(py::module_& m) {
+  py::class_<LegParams, Params>(m, "LegParams",
+                        "Parameters of a machine with three legs: \"name\" is that of all legs, \"name:2\" by how much "
+                        "that of leg 2 is larger, zero unless it is set.")
+      .def(py::init<const Params&>(), py::arg("common") = Params())
+      .def("__getitem__",
+           [](const LegParams& p, const std::string& name) {
+             return sms::param(const_cast<LegParams&>(p), leg_param_index(name));
+           })
+      .def("__setitem__",
+           [](LegParams& p, const std::string& name, double value) {
+             if (!std::isfinite(value)) {
+               raise_status(SMS_NOT_A_NUMBER, name + " is not a finite number");
+             }
+             sms::param(p, leg_param_index(name)) = value;
+           })
+      .def("copy", [](const LegParams& p) { return LegParams(p); })
+      .def_property_readonly("legs", &legs_of, "What each leg has, as simulate_platform takes it.");
+}
+
+est::LegSignals columns(const Eigen::MatrixX3d& signals) { return {signals.col(0), signals.col(1), signals.col(2)}; }
+
+est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, const Eigen::MatrixX3d& extension,
+                                const Eigen::MatrixX3d& pressure_lower, const Eigen::MatrixX3d& pressure_upper,
+                                Eigen::VectorXd supply_pressure, Eigen::VectorXd roll, Eigen::VectorXd pitch,
+                                const std::map<std::string, double>& conditions) {
+  return {step,
+          columns(command),
+          columns(extension),
+          columns(pressure_lower),
+          columns(pressure_upper),
+          std::move(supply_pressure),
+          std::move(roll),
+          std::move(pitch),
+          conditions_of(conditions)};
+}
+
+std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> records,
+                                              const std::map<std::string, double>& noise, const std::string& friction,
+                                              const std::string& valve, const std::string& chambers, int masses,
+                                              double window, double longest_step, int threads) {
+  est::PlatformNoise sizes;
+  for (int i = 0; i < 3; ++i) {
+    const std::string leg = "_" + std::to_string(i + 1);
+    sizes.extension(i) = noise.at("extension" + leg);
+    sizes.pressure_lower(i) = noise.at("chamber_pressure_lower" + leg);
+    sizes.pressure_upper(i) = noise.at("chamber_pressure_upper" + leg);
+  }
+  sizes.supply_pressure = noise.at("supply_pressure");
+  sizes.attitude << noise.at("roll"), noise.at("pitch");
+  return std::make_unique<PlatformProblem>(
+      est::PlatformPlant(std::move(records), sizes, laws_of(friction, valve, chambers),
+                         static_cast<sms::MassModel>(masses), longest_step),
+      est::WindowOptions{window, 0.1, threads});
+}
+
+std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const PlatformProblem& problem, const LegParams& params,
+                                                    const std::vector<std::string>& names) {
+  std::vector<int> free;
+  for (const std::string& name : names) {
+    free.push_back(leg_param_index(name));
+  }
+  Eigen::VectorXd residual;
+  est::RowMatrix jacobian;
+  py::gil_scoped_release unlocked;
+  problem.evaluate(params, free, &residual, free.empty() ? nullptr : &jacobian);
+  if (free.empty()) {
+    jacobian.resize(problem.rows(), 0);
+  }
+  return {residual, jacobian};
+}
+
+}  // namespace
+
+void bind_platform_problem(py::module_& m) {
+  bind_leg_params(m);
+  py::class_<est::PlatformRecord>(
+      m, "PlatformRecord", "One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.")
+      .def(py::init(&make_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
+           py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
+           py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(), py::arg("conditions") = std::map<std::string, double>());
+  py::class_<PlatformProblem>(m, "PlatformProblem", "Prediction errors over windows, in units of the noise.")
+      .def(py::init(&make_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+           py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+           py::arg("chambers") = "polytropic", py::arg("masses") = 0, py::arg("window") = 1.0,
+           py::arg("longest_step") = 2.5e-3, py::arg("threads") = 1)
+      .def_property_readonly("rows", &PlatformProblem::rows)
+      .def_property_readonly("windows", &PlatformProblem::windows)
+      .def("evaluate", &evaluate, py::arg("params"), py::arg("free") = std::vector<std::string>(),
+           "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.")
+      .def("settle", &PlatformProblem::settle, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
+           "Let later searches for initial states begin at the best ones of these parameters.")
+      .def("errors", &PlatformProblem::errors, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
+           "(rows,): predicted less measured over the noise, at the best initial states.")
+      .def("hidden", &PlatformProblem::hidden, py::arg("params"), py::arg("knots"),
+           py::call_guard<py::gil_scoped_release>(),
+           "(rows, 9 knots): derivatives against hidden forces on the three pistons and hidden flows into the three "
+           "lower and the three upper chambers, in each window.");
+}
+
+}  // namespace sms_python
