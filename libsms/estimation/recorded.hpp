@@ -8,7 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "sms/scalar.hpp"
+#include "sms/filter.hpp"
+#include "sms/sensor.hpp"
 
 namespace sms {
 namespace estimation {
@@ -52,6 +53,27 @@ S hidden_at(const S* values, int knots, int samples, double at) {
   const int k = static_cast<int>(place);
   return values[k] + S(place - k) * (values[k + 1] - values[k]);
 }
+
+// A sensor that follows as a first-order lag, stepped exactly for what runs straight. One that is faster than a step, or
+// without a lag, is read as it was that long ago: the limit of the same.
+template <typename S>
+struct FollowingSensor {
+  FollowingSensor(const S& time_constant, const S& step) : lag(time_constant), h(step) {
+    if (value_of(lag) > value_of(h)) {
+      follows = true;
+      weight = low_pass_weight<S>(S(1) / lag, h);
+    }
+  }
+  S at(const S& truth, const S& rate) const { return follows ? reading : late_reading<S>(truth, rate, lag); }
+  void step(const S& from, const S& to) {
+    if (follows) {
+      reading = low_pass_ramp_step<S>(S(1) / lag, h, weight, reading, from, to);
+    }
+  }
+
+  S lag, h, reading{0}, weight{0};
+  bool follows = false;
+};
 
 // Predicted less measured over the noise, against the reading `late` samples later: there the late clock has this
 // sample. Beyond the record: nothing.

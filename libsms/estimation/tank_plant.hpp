@@ -66,10 +66,10 @@ class TankPlant {
  private:
   const TankPlantRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
 
-  // Writes the whitened errors of one sample and returns where the next begin.
+  // Writes the whitened errors of one sample, as the sensors have it, and returns where the next begin.
   template <typename S>
   S* readings(const Params<S>& p, const TankPlantRecord& record, int sample, const TankState<S>& state,
-              const TankState<S>& rate, const S& temperature, S* out) const;
+              const TankState<S>& rate, const S& pressure, const S& temperature, S* out) const;
 
   std::vector<TankPlantRecord> records_;
   TankNoise noise_;
@@ -79,13 +79,12 @@ class TankPlant {
 
 template <typename S>
 S* TankPlant::readings(const Params<S>& p, const TankPlantRecord& record, int sample, const TankState<S>& state,
-                       const TankState<S>& rate, const S& temperature, S* out) const {
+                       const TankState<S>& rate, const S& pressure, const S& temperature, S* out) const {
   S rest;
   const int late = detail::whole_samples(record.step, p.clock_skew_tank, &rest);
-  const S pressure = late_reading<S>(state.gas.pressure, rate.gas.pressure, rest + p.sensor_lag_tank_pressure);
-  *out++ =
-      detail::reading_error<S>(sensor_reading(pressure, p.sensor_gain_tank_pressure, p.sensor_offset_tank_pressure),
-                               record.pressure, sample + late, noise_.pressure);
+  const S then = late_reading<S>(pressure, rate.gas.pressure, rest);
+  *out++ = detail::reading_error<S>(sensor_reading(then, p.sensor_gain_tank_pressure, p.sensor_offset_tank_pressure),
+                                    record.pressure, sample + late, noise_.pressure);
   if (record.temperature.size() > 0) {
     const S warmer = temperature - p.air_temperature;  // a thermocouple measures against its cold junction
     const S reading =
@@ -146,19 +145,18 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
           detail::hidden_at(hidden, knots, window.samples, at) * p.gas_constant * p.air_temperature / t.space.volume;
     }
   };
-  // A thermocouple without a lag of its own, or with less than a step of it, is read as it was that long ago.
-  const bool lags = value_of(p.thermocouple_time_constant) > value_of(h);
-  const S rate_of_couple = lags ? S(S(1) / p.thermocouple_time_constant) : S(0);
-  const S weight = lags ? low_pass_weight<S>(rate_of_couple, h) : S(0);
-  S couple = warm ? start[3] : p.air_temperature;
+  detail::FollowingSensor<S> gauge(p.sensor_lag_tank_pressure, h), couple(p.thermocouple_time_constant, h);
+  couple.reading = warm ? start[3] : p.air_temperature;
 
   const S g = S(0.29289321881345254) * h;
   const S air = p.heat_capacity_ratio * p.gas_constant * p.air_temperature;
   for (int k = 0;; ++k) {
     rates(k, state, k1);
-    const S seen = tank_air(tank, state.gas).temperature;
-    const S at_once = late_reading<S>(seen, k1.gas.temperature, p.thermocouple_time_constant);
-    residual = readings<S>(p, record, window.first + k, state, k1, lags ? couple : at_once, residual);
+    if (k == 0) {
+      gauge.reading = late_reading<S>(state.gas.pressure, k1.gas.pressure, p.sensor_lag_tank_pressure);
+    }
+    residual = readings<S>(p, record, window.first + k, state, k1, gauge.at(state.gas.pressure, k1.gas.pressure),
+                           couple.at(tank_air(tank, state.gas).temperature, k1.gas.temperature), residual);
     if (k == window.samples - 1) {
       return;
     }
@@ -173,17 +171,16 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
           droops ? S(S(1) + g * air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed)) : S(1);
       k1.gas.pressure /= of_tank;
       k1.supply_pressure /= of_reservoir;
-      const S before = tank_air(tank, state.gas).temperature;
+      const Gas<S> before = tank_air(tank, state.gas);
       vector_of(moved) = vector_of(state) + h * vector_of(k1);
       rates(k + double(i + 1) / steps, moved, k2);
       vector_of(k2) -= S(2) * vector_of(k1);
       k2.gas.pressure /= of_tank;
       k2.supply_pressure /= of_reservoir;
       vector_of(state) += (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
-      if (lags) {
-        couple =
-            low_pass_ramp_step<S>(rate_of_couple, h, weight, couple, before, tank_air(tank, state.gas).temperature);
-      }
+      const Gas<S> after = tank_air(tank, state.gas);
+      gauge.step(before.pressure, after.pressure);
+      couple.step(before.temperature, after.temperature);
     }
   }
 }

@@ -104,6 +104,16 @@ def best_class(
     return members
 
 
+def by_window(seen: Array, unseen: Array, data: Data) -> Array:
+    """Sums of squared residuals (rows,) of identify and validate records over windows, one after the other."""
+    return np.concatenate(
+        [
+            sum_by(part.block, squared, int(part.block.max()) + 1)
+            for part, squared in ((data.identify, seen), (data.validate, unseen))
+        ]
+    )
+
+
 TELLS_APART = 3.0
 """Standard errors of the difference between two rivals, over windows, from which the worse one is out."""
 TELLS_ALIKE_APART = 0.05
@@ -116,14 +126,9 @@ A machine differs from any model of it, and a small part of that falls in the di
 def _best_of_runs(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
     """As best_class, where each rival has one parameter and all windows count: seen ones and unseen ones alike."""
 
-    def by_window(identified: Array, unseen_: Array) -> Array:
-        seen = sum_by(data.identify.block, identified, int(data.identify.block.max()) + 1)
-        rest = sum_by(data.validate.block, unseen_, int(data.validate.block.max()) + 1)
-        return np.concatenate([seen, rest])
-
-    left = {t.effect.key: by_window(t.identified, t.squared) for t in accepted}
+    left = {t.effect.key: by_window(t.identified, t.squared, data) for t in accepted}
     best = min(accepted, key=lambda t: float(left[t.effect.key].sum()))
-    before = by_window(current.fit.residual**2, unseen(current, data) ** 2)
+    before = by_window(current.fit.residual**2, unseen(current, data) ** 2, data)
     taken = float(before.sum() - left[best.effect.key].sum())
     members = []
     for trial in accepted:

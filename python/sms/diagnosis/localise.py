@@ -27,6 +27,8 @@ KNOTS = 21
 """Points of time per window, 50 ms apart."""
 PIECES = 7
 """Values of a function of one signal."""
+MOVES = 20.0
+"""Standard deviations of its noise that a signal has to run through before anything can be seen to follow it."""
 DRAWS = 199
 RIDGE = 1e-3
 
@@ -44,9 +46,18 @@ class Basis:
 
 
 def signals_of(runs: Runs) -> dict[str, Array]:
-    """What a hidden term may follow: (rows,) each."""
+    """What a hidden term may follow: (rows,) each.
+
+    Not a signal that hardly moves: its readings are noise, and an error of that reading would follow them of itself.
+    """
     wanted = runs.inputs
-    names = [n for n in wanted if not n.startswith(("direction", "supply", "setpoint"))]
+
+    def moves(name: str) -> bool:
+        low, high = np.quantile(wanted[name], [0.05, 0.95])
+        return bool(high - low > MOVES * runs.noise.get(name.partition(" [")[0], 0.0))
+
+    left_out = ("direction", "supply", "setpoint")
+    names = [n for n in wanted if not n.startswith(left_out) and moves(n)]
     return {n: wanted[n] for n in names}
 
 

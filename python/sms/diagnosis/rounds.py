@@ -14,6 +14,7 @@ from sms.diagnosis.prepare import Comparison
 from sms.diagnosis.repeatability import Repeatability, repeatability
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.search import Trial, try_effects
+from sms.diagnosis.together import judged_together
 
 MOST_CAUSES = 4
 """More are not named: with so many terms something always fits."""
@@ -42,13 +43,15 @@ class Outcome:
 
     final: Fitted
     rounds: list[Round]
+    found: list[list[Trial]]
+    """One class of trials for each cause; the first of it stands for it in the final model."""
     named: bool = True
     """False when so much is left that none of what was found is named."""
 
     @property
     def classes(self) -> list[list[Trial]]:
-        """One class of trials for each cause; the first of it stands for it in the final model."""
-        return [r.members for r in self.rounds if r.members] if self.named else []
+        """What was found, if it is named."""
+        return self.found if self.named else []
 
 
 def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatability:
@@ -76,6 +79,9 @@ def find_causes(
 ) -> Outcome:
     """Until nothing more is found: the best effect joins the model, with those that look alike.
 
+    Where a simulation is held against the records, a rival of an earlier cause may come to join it, and in the end all
+    causes are judged in the presence of each other.
+
     floor: mean square of what no model of the state explains. enough: whether a model leaves so little that nothing
     more is looked for.
     """
@@ -95,9 +101,12 @@ def find_causes(
         if not members:
             break
         current = members[0].fitted
-        found = {m.effect.key for m in members}
-        remaining = [e for e in remaining if e.key not in found]
-    return Outcome(current, rounds)
+        out = members[:1] if data.identify.whitened else members
+        remaining = [e for e in remaining if e.key not in {m.effect.key for m in out}]
+    found = [r.members for r in rounds if r.members]
+    if data.identify.whitened and found:
+        found, current = judged_together(found, baseline, data)
+    return Outcome(current, rounds, found)
 
 
 def decide(outcome: Outcome, before: Repeatability, after: Repeatability) -> Verdict:

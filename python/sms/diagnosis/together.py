@@ -1,0 +1,102 @@
+"""Causes that were found one after another, judged in the presence of each other.
+
+A round names what explains most alone, while all that later rounds will find is still in the data. A rival that was as
+good then may be out once the others are in the model, and a cause may turn out to have stood in for two others. So each
+cause is taken out in turn: if the rest explain the records without it, it is dropped; else its rivals are fitted in its
+place, and compared as in a round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sms import _core
+from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.gauss_newton import changed
+from sms.diagnosis.result import Array
+from sms.diagnosis.hypothesis import Data, Fitted, fit, unseen
+from sms.diagnosis.judgement import TELLS_APART, by_window
+from sms.diagnosis.search import Trial
+
+NEARLY = 0.9
+"""Of what the best of the rivals takes: what a rival has to take."""
+
+
+def judged_together(
+    classes: Sequence[list[Trial]], baseline: Fitted, data: Data
+) -> tuple[list[list[Trial]], Fitted]:
+    """The classes that are still needed, each with the rivals that are still as good, and the first ones' model."""
+    final = classes[-1][0].fitted
+    if len(classes) < 2:
+        return list(classes), final
+    kept = list(classes)
+    for members in classes:
+        place = next(i for i, c in enumerate(kept) if c is members)
+        others = [c[0].effect for c in kept if c is not members]
+        without = _model(others, baseline, final.params, data)
+        rivals = [m for m in members if m.effect not in others]
+        tried = [(m, _model([*others, m.effect], baseline, _near(final, m), data)) for m in rivals]
+        if not tried or not _told_apart(without, _best(tried, data)[1], data):
+            kept.pop(place)
+            final = without
+            continue
+        best, final = _best(tried, data)
+        left, alone = _left(final, data).sum(), _left(without, data).sum()
+        as_good = [
+            _in_place(m, fitted, data)
+            for m, fitted in tried
+            if m is not best
+            and not _told_apart(fitted, final, data)
+            and alone - _left(fitted, data).sum() >= NEARLY * (alone - left)
+        ]
+        kept[place] = [_in_place(best, final, data), *as_good]
+    return kept, final
+
+
+def _near(final: Fitted, rival: Trial) -> _core.Params:
+    """Where the fit with a rival begins: at the present model, the rival as its own round had it."""
+    names = list(rival.effect.parameters)
+    return changed(final.params, names, np.array([rival.fitted.params[n] for n in names]))
+
+
+def _model(effects: Sequence[Effect], baseline: Fitted, near: _core.Params, data: Data) -> Fitted:
+    hypothesis = baseline.hypothesis
+    for effect in effects:
+        hypothesis = hypothesis.with_effect(effect)
+    start = baseline.params.copy()
+    for name in hypothesis.free:
+        start[name] = near[name]
+    return fit(hypothesis, data.identify, start)
+
+
+def _left(fitted: Fitted, data: Data) -> Array:
+    """Chi-square by window, over seen and unseen records."""
+    return by_window(fitted.fit.residual**2, unseen(fitted, data) ** 2, data)
+
+
+def _best(tried: Sequence[tuple[Trial, Fitted]], data: Data) -> tuple[Trial, Fitted]:
+    return min(tried, key=lambda t: float(_left(t[1], data).sum()))
+
+
+def _told_apart(worse: Fitted, better: Fitted, data: Data) -> bool:
+    difference = _left(worse, data) - _left(better, data)
+    return float(difference.sum()) > TELLS_APART * float(
+        np.std(difference) * np.sqrt(len(difference))
+    )
+
+
+def _in_place(member: Trial, fitted: Fitted, data: Data) -> Trial:
+    squared = unseen(fitted, data) ** 2
+    return Trial(
+        member.effect,
+        fitted,
+        member.p_value,
+        squared,
+        gain=member.gain,
+        gain_interval=member.gain_interval,
+        similarity=member.similarity,
+        accepted=True,
+        identified=fitted.fit.residual**2,
+    )
