@@ -5,8 +5,9 @@
 // Without heat the temperature is that of the supplied air, and the thermometer sees that. The spool follows the command
 // alone and is run up over the 50 ms before the window.
 //
-// The step is that of bench_plant.hpp (ROS2), with the flow over its pressure difference as the slope of each pressure:
-// a small tank behind an open valve is stiff, and so is a reservoir behind a short line.
+// The step is that of bench_plant.hpp (ROS2), with the flow over its pressure difference as the slope of each pressure
+// and the exchange of its air as that of the temperature: a small tank behind an open valve is stiff, and so is a
+// reservoir behind a short line.
 #pragma once
 
 #include "estimation/recorded.hpp"
@@ -169,13 +170,18 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
       const S of_tank = S(1) + g * air / t.space.volume * (feed + vent);
       const S of_reservoir =
           droops ? S(S(1) + g * air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed)) : S(1);
+      const S thin = t.air.pressure > S(1e3) ? t.air.pressure : S(1e3);  // a bad guess may have emptied the tank
+      const S of_heat =
+          S(1) + g * p.gas_constant * p.air_temperature * (t.flow.in + t.flow.out) / (thin * t.space.volume);
       k1.gas.pressure /= of_tank;
+      k1.gas.temperature /= of_heat;
       k1.supply_pressure /= of_reservoir;
       const Gas<S> before = tank_air(tank, state.gas);
       vector_of(moved) = vector_of(state) + h * vector_of(k1);
       rates(k + double(i + 1) / steps, moved, k2);
       vector_of(k2) -= S(2) * vector_of(k1);
       k2.gas.pressure /= of_tank;
+      k2.gas.temperature /= of_heat;
       k2.supply_pressure /= of_reservoir;
       vector_of(state) += (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
       const Gas<S> after = tank_air(tank, state.gas);

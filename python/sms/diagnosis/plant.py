@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.diagnosis.catalogue import Effect, effects_of
+from sms.diagnosis.contradiction import Contradiction, contradiction, differ
 from sms.diagnosis.empirical import empirical_of
 from sms.diagnosis.evidence import candidates_of, cause_from, gains_on, value_of
 from sms.diagnosis.excess import LEAST, LEAST_OF_ONE, Excess, excess_of
@@ -29,7 +30,12 @@ from sms.diagnosis.kind import Kind, Run
 from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.localise import localise
 from sms.diagnosis.plan import plan_next
-from sms.diagnosis.plant_words import conclusion, sentence
+from sms.diagnosis.plant_words import (
+    conclusion,
+    sentence,
+    sentence_of_contradiction,
+    words_of_contradiction,
+)
 from sms.diagnosis.result import (
     Array,
     Cause,
@@ -67,6 +73,8 @@ class Case:
     after: Excess
     blind: Sequence[NotTestable]
     verdict: Verdict
+    contradiction: Contradiction | None = None
+    """With the verdict data-fault."""
 
     def where(self, rng: np.random.Generator) -> Hidden:
         """Which equation the baseline's error comes from."""
@@ -138,9 +146,22 @@ def investigate(
     )
     after = excess_of(outcome.final, data)
     verdict = decide(outcome, before, after)
-    if verdict == "unknown":
+    found = None
+    if verdict == "unknown" or not all(
+        _consistent(c[0], outcome.final, data) for c in outcome.classes
+    ):
+        found = contradiction(baseline, data, able, before.floor)
+    if found is not None:
+        verdict = "data-fault"
+    if verdict in ("unknown", "data-fault"):
         outcome = replace(outcome, named=False)
-    return Case(data, baseline, outcome, before, after, blind, verdict)
+    return Case(data, baseline, outcome, before, after, blind, verdict, found)
+
+
+def _consistent(cause: Trial, final: Fitted, data: Data) -> bool:
+    """Whether the records agree on a cause's size."""
+    each = record_by_record(final, cause.effect, data)
+    return not differ(list(each.values()), data.rig.declared(cause.effect.parameters[0]).value)
 
 
 def small(excess: Excess) -> bool:
@@ -172,6 +193,9 @@ def complete(
 ) -> Diagnosis:
     """The whole answer, in numbers and in words; `empirical` asks for the curve of an unknown as a term."""
     data, baseline, outcome = case.data, case.baseline, case.outcome
+    if case.contradiction is not None:
+        said = words_of_contradiction(case.contradiction, data.rig.path.name)
+        blank = replace(blank, findings=(*blank.findings, said))
     causes = tuple(_cause(members, case) for members in outcome.classes)
     final = outcome.final if outcome.named else baseline
     progress("asking which equation is wrong", 0.85)
@@ -192,7 +216,9 @@ def complete(
     return replace(
         blank,
         verdict=case.verdict,
-        sentence=sentence(case.verdict, causes, hidden, case.before),
+        sentence=sentence(case.verdict, causes, hidden)
+        if case.contradiction is None
+        else sentence_of_contradiction(case.contradiction),
         conclusion=conclusion(case.verdict, causes, gain, hidden, left, case.before, case.after),
         causes=causes,
         candidates=candidates_of(outcome.rounds),

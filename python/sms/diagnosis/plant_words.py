@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from sms.diagnosis.contradiction import Contradiction
 from sms.diagnosis.excess import Excess
-from sms.diagnosis.result import Cause, Gain, Hidden, Verdict
+from sms.diagnosis.result import Cause, Finding, Gain, Hidden, Verdict
 from sms.diagnosis.words import capital, explained
 from sms.units_display import format_aligned, format_percent
 from sms.units_display import words as spaced
 
 
-def sentence(verdict: Verdict, causes: Sequence[Cause], hidden: Hidden, before: Excess) -> str:
+def sentence(verdict: Verdict, causes: Sequence[Cause], hidden: Hidden) -> str:
     """What a person reads first."""
     if verdict == "no-evidence":
         return (
@@ -27,6 +28,28 @@ def sentence(verdict: Verdict, causes: Sequence[Cause], hidden: Hidden, before: 
         return f"The simulation misses {explained(causes[0])}."
     listed = "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1))
     return f"The simulation misses {listed}."
+
+
+def sentence_of_contradiction(found: Contradiction) -> str:
+    return (
+        "The records contradict each other: each is explained by itself, but no single model is right for all. "
+        f"The nearest explanation, {found.effect.title}, would need another size in each."
+    )
+
+
+def words_of_contradiction(found: Contradiction, rig: str) -> Finding:
+    """The finding, with the value that each record asks for."""
+    name = found.effect.parameters[0]
+    values = format_aligned([v for v, _ in found.values.values()], found.unit)
+    each = ", ".join(f"{v} in '{r}'" for r, v in zip(found.values, values, strict=True))
+    return Finding(
+        "error",
+        rig,
+        None,
+        found.effect.signal if found.effect.of_sensor else None,
+        f"the records contradict each other: with {found.effect.title}, {name} would be {each}",
+        "find out what was changed between the runs and state it as their conditions, or leave out the one at odds",
+    )
 
 
 def block_in_words(equation: str) -> str:

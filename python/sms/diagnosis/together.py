@@ -15,13 +15,15 @@ import numpy as np
 from sms import _core
 from sms.diagnosis.catalogue import Effect
 from sms.diagnosis.gauss_newton import changed
-from sms.diagnosis.result import Array
 from sms.diagnosis.hypothesis import Data, Fitted, fit, unseen
 from sms.diagnosis.judgement import TELLS_APART, by_window
+from sms.diagnosis.result import Array
 from sms.diagnosis.search import Trial
 
 NEARLY = 0.9
 """Of what the best of the rivals takes: what a rival has to take."""
+IDLE = 0.02
+"""Of what all causes take: one that adds less than this to the others has stood in for them, and is dropped."""
 
 
 def judged_together(
@@ -31,19 +33,20 @@ def judged_together(
     final = classes[-1][0].fitted
     if len(classes) < 2:
         return list(classes), final
-    kept = list(classes)
+    kept, original = list(classes), _left(baseline, data).sum()
     for members in classes:
         place = next(i for i, c in enumerate(kept) if c is members)
         others = [c[0].effect for c in kept if c is not members]
         without = _model(others, baseline, final.params, data)
         rivals = [m for m in members if m.effect not in others]
         tried = [(m, _model([*others, m.effect], baseline, _near(final, m), data)) for m in rivals]
-        if not tried or not _told_apart(without, _best(tried, data)[1], data):
+        best, fitted = _best(tried, data) if tried else (None, without)
+        left, alone = _left(fitted, data).sum(), _left(without, data).sum()
+        if best is None or alone - left < IDLE * (original - left):
             kept.pop(place)
             final = without
             continue
-        best, final = _best(tried, data)
-        left, alone = _left(final, data).sum(), _left(without, data).sum()
+        final = fitted
         as_good = [
             _in_place(m, fitted, data)
             for m, fitted in tried

@@ -71,6 +71,8 @@ def _why_not_asked(effect: Effect, data: Data) -> str:
 
 
 def _why_blind(effect: Effect, fitted: Fitted, data: Data, raw: Array, column: Array) -> str:
+    if not np.all(np.isfinite(raw)):
+        return "with it the simulation breaks down on these records"
     if not np.any(raw):
         return "it leaves no trace in the signals of this rig"
     if effect.needs:

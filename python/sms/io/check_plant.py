@@ -25,6 +25,10 @@ USUAL_RANGE = {
     "tank_pressure": 1e5,
 }
 """SI; what a run of this machine sweeps."""
+OPENS = (
+    0.7  #: V from the centre; a command that goes so far both ways feeds and vents what it drives
+)
+NOISY = 0.5  #: of the resolution: with more noise than this a reading cannot stand still, at an end stop neither
 ENDS = {"extension", "valve_command", "setpoint", "tank_pressure", "tank_temperature"}
 """Signals that may rest at an extreme: end stops, a command that is held, a tank that is full."""
 
@@ -104,6 +108,47 @@ def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
                     f"sits at its {word} value for {100 * share:.0f} % of the record",
                     "the sensor or its amplifier is saturated; choose another range",
                 )
+
+
+def noisy_channels_that_stand_still(rig: Rig, record: Record) -> Iterator[Finding]:
+    """A channel whose declared noise moves it from sample to sample, and that rests at its own extreme all the same."""
+    for name, values in record.signals.items():
+        source = rig.signals.get(name)
+        if without_leg(name) not in ENDS & USUAL_RANGE.keys() or source is None:
+            continue
+        if not source.noise or source.noise < NOISY * source.resolution or np.ptp(values) == 0.0:
+            continue
+        for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
+            share = float(np.mean(values == extreme))
+            if share > CLIPPED_SHARE:
+                yield record.finding(
+                    "error",
+                    int(np.argmax(values == extreme)),
+                    name,
+                    f"sits at its {word} value for {100 * share:.0f} % of the record, without its declared noise",
+                    "the sensor or its amplifier is saturated; choose another range",
+                )
+
+
+def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Finding]:
+    """What a valve feeds and vents has to answer."""
+    centre = rig.declared("valve_centre").value
+    for name, values in record.signals.items():
+        stem = without_leg(name)
+        if stem not in USUAL_RANGE or stem == "valve_command":
+            continue
+        command = record.signals["valve_command" + name[len(stem) :]] - centre
+        if min(float(command.max()), -float(command.min())) < OPENS:
+            continue
+        low, high = np.nanquantile(values, [0.05, 0.95])
+        if high - low < MOVES * USUAL_RANGE[stem]:
+            yield record.finding(
+                "error",
+                None,
+                name,
+                f"hardly moves, although the command opens the valve by {OPENS:g} V and more both ways",
+                "the sensor or its cable is dead, or what it measures is blocked; leave this record out",
+            )
 
 
 def plausible_extensions(rig: Rig, record: Record) -> Iterator[Finding]:
