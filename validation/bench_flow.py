@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
-from sms.identification.flow import declared_params, fit_start
+from sms.identification.flow import fit_start
+from sms.identification.flow_problem import declared_params
 from sms.identification.flow_record import FlowRecord, Look, look_at
 
 from validation.flow_matrix.tank_twin import delayed, matrix, read, sensor_of, simulate

@@ -1,10 +1,11 @@
-"""Which coefficients of the source's Tables 5.1 and 5.2 can be read off the source's own kind of test?
+"""Which of the source's coefficients can be read off the source's own kind of test?
 
     python -m validation.source_coefficients [--seed 1]
 
 Every printed triple C, b, m is taken as the truth of a component, the independent simulator makes
 the record that the source would have taken of it (100 Hz, 323 Pa of noise, in discharge the sensor's
-floor at 100 mbar), and the identification says what can be told from it.
+floor at 100 mbar), and the identification says what can be told from it. Those of the actuator, in
+actuator_runs/source_tests.py, are asked by their information.
 """
 
 from __future__ import annotations
@@ -14,9 +15,11 @@ from collections.abc import Iterator
 
 import numpy as np
 from sms import _core
-from sms.identification.flow import COMPONENT, FlowFit, fit_records
+from sms.identification.flow import FlowFit, fit_records
+from sms.identification.flow_problem import COMPONENT
 from sms.identification.flow_record import FlowRecord
 
+from validation.actuator_runs import source_tests
 from validation.flow_matrix.tank_twin import (
     Charging,
     Component,
@@ -64,7 +67,7 @@ def summary(group: list[tuple[Component, FlowFit]]) -> list[str]:
 
 
 def main() -> None:
-    """Print the table, then every coefficient that cannot be told, with its interval."""
+    """Print the tables: the valve's, every m that cannot be told with its interval, the actuator's."""
     parser = argparse.ArgumentParser(prog="python -m validation.source_coefficients")
     parser.add_argument("--seed", type=int, default=1)
     made = list(records(parser.parse_args().seed))
@@ -84,6 +87,8 @@ def main() -> None:
                 print(
                     f"- {name}, {fit.record.name}: {truth.index:.4g}; {m.lower:.2g} to {m.upper:.2g}"
                 )
+    print("\n" + "\n".join(source_tests.table()) + "\n")
+    print("\n".join(f"- {text}" for text in source_tests.untold()))
 
 
 if __name__ == "__main__":

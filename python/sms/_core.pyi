@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'TankProblem', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'simulate_tank', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -375,6 +375,14 @@ class Params:
     def clock_skew_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def clock_skew_tank(self) -> float:
+        """
+        clock_skew: by how much the clock of the tank's sensors is late against that of command and supply [s]; neutral
+        """
+    @clock_skew_tank.setter
+    def clock_skew_tank(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def command_delay(self) -> float:
         """
         command_delay: dead time between the controller and the valve's input [s]; neutral
@@ -709,6 +717,14 @@ class Params:
         """
     @heat_capacity_ratio.setter
     def heat_capacity_ratio(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def heat_share(self) -> float:
+        """
+        heat_transfer: from a tank that keeps its temperature (0) to the full energy equation with heat through the wall (1) [1]; neutral
+        """
+    @heat_share.setter
+    def heat_share(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def heat_transfer_coefficient(self) -> float:
@@ -1351,6 +1367,14 @@ class Params:
     def sensor_gain_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def sensor_gain_tank_temperature(self) -> float:
+        """
+        relative gain error of the tank's thermocouple, of what is warmer than the supplied air [1]; neutral
+        """
+    @sensor_gain_tank_temperature.setter
+    def sensor_gain_tank_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def sensor_lag_chamber_pressure_lower(self) -> float:
         """
         sensor_lag: by how much the lower chamber's pressure sensor is late [s]; neutral
@@ -1373,6 +1397,14 @@ class Params:
         """
     @sensor_lag_extension.setter
     def sensor_lag_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_lag_tank_pressure(self) -> float:
+        """
+        sensor_lag: by how much the tank's pressure sensor is late [s]; neutral
+        """
+    @sensor_lag_tank_pressure.setter
+    def sensor_lag_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def sensor_offset_chamber_pressure_lower(self) -> float:
@@ -1421,6 +1453,14 @@ class Params:
         """
     @sensor_offset_tank_pressure.setter
     def sensor_offset_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_offset_tank_temperature(self) -> float:
+        """
+        zero error of the tank's thermocouple [K]; neutral
+        """
+    @sensor_offset_tank_temperature.setter
+    def sensor_offset_tank_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def spool_cubic_0(self) -> float:
@@ -1557,6 +1597,14 @@ class Params:
         """
     @supply_pressure.setter
     def supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def tank_flow_change(self) -> float:
+        """
+        flow_conductance of a tank: relative change of the valve's flow against its tables, which were measured on one [1]; neutral
+        """
+    @tank_flow_change.setter
+    def tank_flow_change(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def tank_initial_pressure(self) -> float:
@@ -2047,12 +2095,6 @@ class TankProblem(Problem):
         """
         s, of the integration
         """
-class BenchRecord:
-    """
-    One evenly sampled record of the rig 'bench'; arrays (n,), SI.
-    """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
-        ...
 class Window:
     """
     A stretch of a record that is simulated from an initial state of its own.
@@ -2072,19 +2114,27 @@ class Window:
     @property
     def samples(self) -> int:
         ...
+class BenchRecord:
+    """
+    One evenly sampled record of the rig 'bench'; arrays (n,), SI.
+    """
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
+        ...
 class BenchProblem(Problem):
     """
-    Prediction errors over windows, in units of the noise.
+    Prediction errors over windows, in units of the noise: for each sample of a window, each output.
     """
     def __init__(self, *, records: collections.abc.Sequence[BenchRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
-        ...
+        """
+        noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and supply_pressure. Hidden inputs: a force, N, and flows into either chamber, kg/s.
+        """
     def errors(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         (rows,): predicted less measured over the noise, at the best initial states.
         """
     def hidden(self, params: Params, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (rows, 3 knots): derivatives against a hidden force and hidden flows into either chamber, in each window.
+        (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
     def settle(self, params: Params) -> None:
         """
@@ -2093,6 +2143,54 @@ class BenchProblem(Problem):
     @property
     def windows(self) -> list[Window]:
         ...
+class TankPlantRecord:
+    """
+    One evenly sampled record of the rig 'tank'; arrays (n,), SI, empty where there is no sensor.
+    """
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
+        ...
+class TankPlantProblem(Problem):
+    """
+    Prediction errors over windows, in units of the noise: for each sample of a window, each output.
+    """
+    def __init__(self, *, records: collections.abc.Sequence[TankPlantRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+        """
+        noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.
+        """
+    def errors(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,): predicted less measured over the noise, at the best initial states.
+        """
+    def hidden(self, params: Params, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
+        """
+    def settle(self, params: Params) -> None:
+        """
+        Let later searches for initial states begin at the best ones of these parameters.
+        """
+    @property
+    def windows(self) -> list[Window]:
+        ...
+class SpoolRecord:
+    """
+    Command and measured spool position, evenly sampled; (n,), SI.
+    """
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        ...
+    @property
+    def first_compared(self) -> int:
+        """
+        Sample from which on positions are compared; before it the spool is run up.
+        """
+class SpoolProblem(Problem):
+    """
+    Predicted less measured spool position, m.
+    """
+    def __init__(self, records: collections.abc.Sequence[SpoolRecord], law: str = 'cubic') -> None:
+        """
+        law: cubic (eq. 4.1) or linear (eq. 4.2).
+        """
 class Fit:
     """
     The result of a least-squares fit.
@@ -2359,6 +2457,10 @@ def sampled_extension(params: Params, extension: typing.Annotated[numpy.typing.A
 def simplified_plant(params: Params, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, mass: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float]:
     """
     (natural frequency, rad/s; damping ratio), eq. 8.2 and 8.3; Pa absolute, kg.
+    """
+def simulate_tank(*, record: TankPlantRecord, params: Params, pressure: typing.SupportsFloat | typing.SupportsIndex, valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    (n, channels): what the sensors that `record` has would read under its command, of a tank at rest at first, at `pressure`, Pa absolute.
     """
 def six_leg_inverse(params: Params, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
     """

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from sms.identification.colour import Colour, colour_of, coloured_meat
 from sms.identification.estimate import Free, estimate
-from sms.identification.flow import COMPONENT, FlowFit, fit_record
+from sms.identification.flow import FlowFit, fit_record
 from sms.identification.flow_map import valve_map
+from sms.identification.flow_problem import COMPONENT
 from sms.identification.flow_record import FlowRecord, look_at
 from sms.identification.flow_result import load_valve_map
 from sms.io import InputError

@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from sms.identification.flow import COMPONENT, SYMBOL, fit_record
+from sms.identification.flow import fit_record
+from sms.identification.flow_problem import COMPONENT, SYMBOL
 from sms.identification.flow_record import FlowRecord
 from sms.io.rig import Declaration
 from sms.parameters import PARAMETERS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.stats import binom
-from sms.identification.flow import COMPONENT
+from sms.identification.flow_problem import COMPONENT
 
 from validation.flow_matrix.tank_twin import Charging, Component, simulate
 from validation.flow_matrix.trial import CASES, cover

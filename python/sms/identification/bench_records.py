@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sms.diagnosis.result import Array
+from sms import _core
 from sms.diagnosis.kind import Run
 from sms.diagnosis.kinds import KINDS
+from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs, make_run, noise_of
 from sms.io.check import check_record
 from sms.io.errors import InputError
@@ -41,6 +42,13 @@ class BenchRecords:
     """What single records prevent, and what they still show."""
     moves: bool
     """Whether the piston moves anywhere in the records to identify with."""
+
+    @property
+    def problem(self) -> _core.BenchProblem:
+        """The records to identify with, as the core's problem."""
+        problem = self.identify.problem
+        assert isinstance(problem, _core.BenchProblem)
+        return problem
 
     @property
     def series(self) -> list[NDArray[np.intp]]:

@@ -17,7 +17,8 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import isotonic_regression
 
 from sms.diagnosis.result import Array
-from sms.identification.flow import COMPONENT, FlowFit
+from sms.identification.flow import FlowFit
+from sms.identification.flow_problem import COMPONENT
 from sms.identification.flow_record import FlowRecord
 from sms.identification.flow_rig import supplies
 

@@ -64,7 +64,7 @@ def identify_friction(
             f"{path}, [rig] kind: '{rig.kind}' has no single cylinder; sms identify friction reads "
             "rigs of kind 'cylinder' or 'bench'"
         )
-    motions, findings = _motions(rig)
+    motions, findings, loaded = _motions(rig)
     identify = [m for m in motions if m.role == "identify"]
     validate = [m for m in motions if m.role != "identify"]
     if not identify:
@@ -76,7 +76,7 @@ def identify_friction(
     laws = []
     for number, law in enumerate(choice):
         progress(f"fitting {EQUATION[law]}", number / len(choice))
-        laws.append(fit_law(law, identify, validate, start, asked))
+        laws.append(fit_law(law, identify, validate, start, asked, loaded))
     judge = (lambda f: f.rms_validate) if validate else (lambda f: f.rms_identify)
     speeds = np.concatenate([np.abs(m.velocity[m.used]) for m in identify])
     acceleration = np.concatenate([m.acceleration[m.used] for m in identify])
@@ -92,8 +92,8 @@ def identify_friction(
     )
 
 
-def _motions(rig: Rig) -> tuple[list[Motion], tuple[Finding, ...]]:
-    """Every record with its motion; without a load cell the rod pushes on nothing (F_L = 0)."""
+def _motions(rig: Rig) -> tuple[list[Motion], tuple[Finding, ...], bool]:
+    """Every record with its motion, and whether a load cell was read; without one F_L = 0."""
     records = [load_record(rig, source) for source in rig.records]
     findings = tuple(f for record in records for f in check_record(rig, record))
     raise_if_unusable(findings)
@@ -105,7 +105,7 @@ def _motions(rig: Rig) -> tuple[list[Motion], tuple[Finding, ...]]:
         if not motion.used.any():
             raise InputError(_standstill(rig, record))
         motions.append(_thinned(motion))
-    return motions, findings
+    return motions, findings, any("rod_force" in record.signals for record in records)
 
 
 def _thinned(motion: Motion) -> Motion:

@@ -137,9 +137,11 @@ def fit_law(
     validate: Sequence[Motion],
     start: _core.Params,
     asked: Sequence[str],
+    loaded: bool = True,
 ) -> LawFit:
+    """Fit one law; without a load cell (`loaded`) there is no zero error of it to fit."""
     problem, used = problem_of(identify, law)
-    wanted = (*LAWS[law], *(n for n in asked if n not in LAWS[law]))
+    wanted = [n for n in dict.fromkeys((*LAWS[law], *asked)) if loaded or "rod_force" not in n]
     names, left_out, start = _choose(problem, used, law, start, wanted)
     found = _estimate(problem, used, start, names)
     comparison = Comparison(tuple(identify))

@@ -46,7 +46,7 @@ def told_words(t: Told) -> str:
     unit = PARAMETERS[t.name].unit
     text = f"{words(t.name)} {format_estimate(t.value, t.error, unit, t.name)}"
     if math.isfinite(t.scatter):
-        text += f", runs scatter by {t.scatter:.2g}"
+        text += f", runs alone scatter by {t.scatter:.2g}"
     return text
 
 

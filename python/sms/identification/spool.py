@@ -19,7 +19,7 @@ from sms.diagnosis.result import Array
 from sms.identification.actuator import BenchResult, wanted_of
 from sms.identification.bench_fit import Progress, fit_bench, start_params
 from sms.identification.bench_records import load_bench
-from sms.identification.estimate import Estimate, Free, estimate
+from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.io.check import check_record, raise_if_unusable
 from sms.io.errors import InputError
 from sms.io.records import Finding, Record, load_record
@@ -235,13 +235,18 @@ def _fit_law(
     names = [*STATIC[law], *dynamic]
     if _reaches_its_end(identify):
         names.append("spool_limit")
+        furthest = max(float(np.max(np.abs(r.position))) for r in identify)
+        start = with_start(start, spool_limit=furthest)
     residual, _ = problem.evaluate(start)
     spread = max(float(np.sqrt(np.mean(residual**2))), 1e-9)
-    free = [Free.of(n) for n in names]
-    rough = estimate(problem, [start], free, np.full(problem.rows, 1.0 / spread))
+    rough = estimate(
+        problem, [start], _felt(problem, start, names), np.full(problem.rows, 1.0 / spread)
+    )
     # Again in units of what is left, so that a robust loss knows the noise.
     noise = max(rough.scale * spread, 1e-9)
+    free = _felt(problem, rough.params, names)
     found = estimate(problem, [rough.params], free, np.full(problem.rows, 1.0 / noise), huber=huber)
+    names = [f.name for f in free]
     return LawFit(
         law,
         found,
@@ -250,6 +255,13 @@ def _fit_law(
         _validated([r for r in runs if r.role != "identify"], law, found.params),
         _centre(found, law),
     )
+
+
+def _felt(problem: _core.SpoolProblem, params: _core.Params, names: Sequence[str]) -> list[Free]:
+    """A law that stays short of its end does not feel it."""
+    _, jacobian = problem.evaluate(params, list(names))
+    felt = np.linalg.norm(jacobian, axis=0) > 0.0
+    return [Free.of(n) for n, f in zip(names, felt, strict=True) if f]
 
 
 def _reaches_its_end(runs: Sequence[SpoolRun]) -> bool:

@@ -67,7 +67,7 @@ def bench_parts(result: BenchResult) -> tuple[list[str], Views]:
         )  # fmt: skip
     parts.append(
         figure("correlation", "What replaces what", figures["correlation"],
-               "Correlation of the estimates, with what is known within limits.")
+               "Correlation of the estimates, with what is known within limits.", "tall")
     )  # fmt: skip
     parts.append(
         section("surroundings", "Known within limits", _parameters(fit.surroundings, None),
@@ -107,7 +107,7 @@ def _fit_view(runs: Runs, number: int, declared: Array, identified: Array) -> di
         place = "mm" if channel == "extension" else "bar"
         shade = _SHADE[channel]
         predicted = measured + off * runs.noise[channel]
-        panels[place] += [
+        curves = [
             trace(
                 time[drawn],
                 unit.factor * measured[drawn],
@@ -116,11 +116,18 @@ def _fit_view(runs: Runs, number: int, declared: Array, identified: Array) -> di
             ),
             trace(time[drawn], unit.factor * predicted[drawn], words(channel), shade, dash="dash"),
         ]
+        if channel != "supply_pressure":  # nearly constant, far above the chambers'
+            panels[place] += curves
         panels["sd"] += [
             trace(
                 time[drawn], np.clip(before[drawn], -20.0, 20.0), "", shade, dash="dot", quiet=True
             ),
-            trace(time[drawn], off[drawn], "", shade),
+            trace(
+                time[drawn],
+                off[drawn],
+                words(channel) if channel == "supply_pressure" else "",
+                shade,
+            ),
         ]
     titles = {"mm": "extension [mm]", "bar": "pressure [bar]", "sd": "off / noise"}
     return view(
@@ -178,9 +185,8 @@ def _runs_view(fit: BenchFit, t: Told) -> dict[str, Any] | None:
         trace(ends, np.full(2, unit.factor * t.value), "together", "extended"),
         trace(x, value, "alone", "measured", "markers", size=8, error=error),
     ]
-    of = ", ".join(f"{i + 1} {n}" for i, n in enumerate(names))
     label = f"[{unit.label}]" if unit.label else ""
-    return view(words(t.name), f"record: {of}", [panel(f"{words(t.name)} {label}", traces)])
+    return view(words(t.name), "", [panel(f"{words(t.name)} {label}", traces)], x_names=names)
 
 
 def _correlation(fit: BenchFit) -> dict[str, Any]:

@@ -8,8 +8,9 @@ import numpy as np
 
 from sms import _core
 from sms.identification.estimate import LIMIT_95
-from sms.identification.flow import COMPONENT, SYMBOL, FlowFit
+from sms.identification.flow import FlowFit
 from sms.identification.flow_map import MapCurve
+from sms.identification.flow_problem import COMPONENT, SYMBOL
 from sms.identification.flow_result import FlowResult
 from sms.report.markup import esc, section, table
 from sms.report.panels import (
@@ -161,14 +162,18 @@ def _profile_views(f: FlowFit) -> list[dict[str, Any]]:
     views = []
     for name, curve in f.profiles.items():
         limit = np.full(2, LIMIT_95)
-        ends = [curve.value[0], curve.value[-1]]
+        scale, unit = (C_SCALE, " [l/s per bar]") if name == COMPONENT[0] else (1.0, "")
+        value = scale * curve.value
+        ends = [value[0], value[-1]]
         traces = [
-            trace(curve.value, np.minimum(curve.rise, 40.0), SYMBOL[name], "extended",
+            trace(value, np.minimum(curve.rise, 40.0), SYMBOL[name], "extended",
                   "lines+markers"),
             trace(ends, limit, "95 %", "warn", dash="dot"),
         ]  # fmt: skip
         label = f"{f.record.name}: {f.known[name].verdict}"
-        views.append(view(label, SYMBOL[name], [panel("rise of the cost", traces, from_zero=True)]))
+        views.append(
+            view(label, SYMBOL[name] + unit, [panel("rise of the cost", traces, from_zero=True)])
+        )
     return views
 
 

@@ -12,6 +12,7 @@ from sms.identification.friction import FrictionResult
 from sms.identification.friction_fit import EQUATION
 from sms.identification.friction_map import friction_map, law_over_record
 from sms.identification.friction_result import sentences
+from sms.parameters import PARAMETERS
 from sms.report.markup import esc, section, table
 from sms.report.panels import (
     Colour,
@@ -22,7 +23,7 @@ from sms.report.panels import (
     trace,
     view,
 )
-from sms.units_display import words
+from sms.units_display import display_unit, format_estimate, format_quantity, words
 
 _COLOURS: dict[str, Colour] = {
     "stribeck": "baseline", "two_branch": "good", "acceleration_dependent": "extended",
@@ -54,8 +55,9 @@ def friction_html(result: FrictionResult) -> str:
         section("laws", "The laws", _laws_table(result),
                 "Root mean square of what a law leaves, in newtons."),
         section("parameters", f"Parameters of {EQUATION[result.best]}", _parameters_table(result),
-                "Standard errors hold for residuals that are alike within a stroke; where runs "
-                "scatter more, the scatter is the error."),
+                "Standard errors hold for residuals that are alike within a stroke, and for runs that "
+                "differ: each is left out in turn. A run alone may tell a parameter badly that all "
+                "tell well together."),
     ]  # fmt: skip
     if runs:
         parts.append(
@@ -103,7 +105,7 @@ def _map_view(result: FrictionResult, motion: Motion) -> dict[str, Any]:
 def _laws_table(result: FrictionResult) -> str:
     rows = [
         [
-            esc(EQUATION[f.law]), f"{f.rms_identify:.3g}",
+            esc(EQUATION[f.law].replace(" ", "\N{NO-BREAK SPACE}")), f"{f.rms_identify:.3g}",
             f"{f.rms_validate:.3g}" if np.isfinite(f.rms_validate) else "",
             esc(", ".join(words(t.name) for t in f.told)),
         ]
@@ -115,12 +117,21 @@ def _laws_table(result: FrictionResult) -> str:
 def _parameters_table(result: FrictionResult) -> str:
     rows = [
         [
-            esc(words(t.name)), f"{t.value:.4g}", f"{t.error:.2g}", f"{t.scatter:.2g}",
+            esc(words(t.name)),
+            esc(format_estimate(t.value, t.error, PARAMETERS[t.name].unit, t.name)),
+            esc(format_quantity(t.half_width, PARAMETERS[t.name].unit, t.name, 2)),
+            esc(format_quantity(t.scatter, PARAMETERS[t.name].unit, t.name, 2)),
             "yes" if t.shown else "no",
         ]
         for t in result.law(result.best).told
     ]  # fmt: skip
-    headers = ("parameter", "value (SI)", "standard error", "scatter of runs", "shown")
+    headers = (
+        "parameter",
+        "value ± standard error",
+        "half of 95 %",
+        "runs alone scatter by",
+        "shown",
+    )
     return table("", headers, rows)
 
 
@@ -129,10 +140,14 @@ def _runs_view(result: FrictionResult) -> list[dict[str, Any]]:
     for t in result.law(result.best).told:
         if len(t.runs) < 2:
             continue
-        x = np.arange(1, len(t.runs) + 1)
+        unit = display_unit(PARAMETERS[t.name].unit, abs(t.value), t.name)
+        ends = np.array([0.5, len(t.runs) + 0.5])
         traces = [
-            trace(x, np.full(x.size, t.value), "together", "extended"),
-            trace(x, t.runs, "alone", "measured", "markers", size=8),
-        ]
-        views.append(view(words(t.name), "run", [panel("value (SI)", traces)]))
+            trace(ends, np.full(2, unit.scale(t.value)), "together", "extended"),
+            trace(np.arange(1, len(t.runs) + 1), unit.factor * np.array(t.runs), "alone", "measured",
+                  "markers", size=8),
+        ]  # fmt: skip
+        names = [m.name for m in result.motions if m.role == "identify"]
+        title = f"{words(t.name)} [{unit.label}]"
+        views.append(view(words(t.name), "", [panel(title, traces)], x_names=names))
     return views

@@ -43,10 +43,11 @@
       hoverlabel: { bgcolor: colour("surface"), bordercolor: colour("line"), font: { color: colour("ink") } },
       legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 } };
     if (view.names) {
-      return Object.assign(out, { xaxis: axis("", { tickangle: -30 }), yaxis: axis("", { autorange: "reversed" }) });
+      return Object.assign(out, { margin: { l: 64, r: 12, t: 36, b: 44 }, xaxis: axis("", { tickangle: -30 }), yaxis: axis("", { autorange: "reversed" }) });
     }
     const count = view.panels.length;
-    out.xaxis = axis(view.x_title, Object.assign({ anchor: count > 1 ? `y${count}` : "y" }, view.x_log ? { type: "log" } : {}));
+    out.xaxis = axis(view.x_title, Object.assign({ anchor: count > 1 ? `y${count}` : "y" }, view.x_log ? { type: "log" } : {},
+      view.x_names ? { tickvals: view.x_names.map((_, i) => i + 1), ticktext: view.x_names } : {}));
     const heights = view.panels.map((panel) => panel.share || 1);
     const sum = heights.reduce((a, b) => a + b, 0), gap = count > 1 ? 0.05 : 0;
     let top = 1;

@@ -47,7 +47,7 @@ def panel(title: str, traces: Sequence[Mapping[str, Any]], **more: Any) -> dict[
 def view(
     label: str, x_title: str, panels: Sequence[Mapping[str, Any]], **more: Any
 ) -> dict[str, Any]:
-    """What is drawn at a time. `more`: x_log."""
+    """What is drawn at a time. `more`: x_log; x_names, what stands at 1, 2, ... of the axis."""
     return {"label": label, "x_title": x_title, "panels": list(panels)} | more
 
 
