@@ -1,4 +1,4 @@
-// Plants under sampled control: bench and platform, a block of periods at a time.
+// Plants under sampled control: bench, platform and tank, a block of periods at a time.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -64,6 +64,12 @@ std::vector<std::string> state_names(const sms::Platform<double>&) {
   return names;
 }
 
+std::vector<std::string> state_names(const sms::Tank<double>&) {
+  return {"tank_pressure", "tank_temperature", "spool_voltage", "spool_rate", "supply_pressure"};
+}
+
+std::vector<std::string> term_names(const sms::Tank<double>&) { return {"mass_flow", "valve_command"}; }
+
 std::vector<std::string> term_names(const sms::Bench<double>&) {
   return {"acceleration", "friction", "measured_extension", "valve_command"};
 }
@@ -76,6 +82,12 @@ std::vector<std::string> term_names(const sms::Platform<double>&) {
     }
   }
   return names;
+}
+
+void write_terms(const sms::Simulation<sms::Tank<double>>& s, double* row) {
+  const sms::TankTerms<double>& t = s.system.terms;
+  *row++ = t.flow.in - t.flow.out;
+  *row++ = s.command[0];
 }
 
 void write_terms(const sms::Simulation<sms::Bench<double>>& s, double* row) {
@@ -101,6 +113,8 @@ void write_terms(const sms::Simulation<sms::Platform<double>>& s, double* row) {
     }
   }
 }
+
+void set_load(const double* /*nothing pushes on a tank*/, sms::TankInput<double>&) {}
 
 void set_load(const double* value, sms::BenchInput<double>& input) { input.load_force = value[0]; }
 
@@ -208,6 +222,7 @@ class Simulation {
 
 using BenchSimulation = Simulation<sms::Bench<double>>;
 using PlatformSimulation = Simulation<sms::Platform<double>>;
+using TankSimulation = Simulation<sms::Tank<double>>;
 
 std::unique_ptr<BenchSimulation> make_bench_simulation(const Params& params, const Params& controller,
                                                        const std::string& valve, const std::string& friction,
@@ -243,6 +258,15 @@ std::unique_ptr<PlatformSimulation> make_platform_simulation(const std::array<Pa
                                               tolerance, step);
 }
 
+std::unique_ptr<TankSimulation> make_tank_simulation(const Params& params, const std::string& valve,
+                                                     const std::string& chamber, double pressure, double tolerance,
+                                                     double step) {
+  const sms::Tank<double> tank = {params, laws_of(valve, "acceleration_dependent", chamber, false)};
+  return std::make_unique<TankSimulation>(params, tank, sms::tank_at_rest(params, pressure),
+                                          sms::TankInput<double>{params.valve_centre}, "open_loop", false, false,
+                                          tolerance, step);
+}
+
 template <typename Bound>
 void add_running(py::class_<Bound>& c) {
   c.def("advance", &Bound::advance, py::arg("setpoint"), py::arg("noise"), py::arg("load"),
@@ -273,6 +297,10 @@ void bind_plant(py::module_& m) {
                py::arg("control"), py::arg("compensated"), py::arg("electronics"), py::arg("q"),
                py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"));
   add_running(platform);
+  py::class_<TankSimulation> tank(m, "TankSimulation", "The tank of the flow test behind its valve (tank.hpp).");
+  tank.def(py::init(&make_tank_simulation), py::kw_only(), py::arg("params"), py::arg("valve_law"),
+           py::arg("chamber_law"), py::arg("pressure"), py::arg("tolerance"), py::arg("step"));
+  add_running(tank);
 }
 
 }  // namespace sms_python

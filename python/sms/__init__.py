@@ -42,6 +42,7 @@ from sms.simulation import (
     extensions_of,
     simulate_bench,
     simulate_platform,
+    simulate_tank,
 )
 
 __all__ = [
@@ -80,5 +81,6 @@ __all__ = [
     "rod_force",
     "simulate_bench",
     "simulate_platform",
+    "simulate_tank",
     "six_leg_inverse",
 ]

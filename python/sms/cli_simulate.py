@@ -49,24 +49,33 @@ def simulate(
     settings: Settings = [],  # noqa: B006 (typer copies it)
     as_json: AsJson = False,
 ) -> None:
-    """Simulate the platform: a scenario in, the motion that comes out, and where its limit is.
+    """Simulate platform, bench or tank: a scenario in, what comes out, and where its limit is.
 
     The command is a deck-motion record (roll, pitch, heave in any unit; band-limited, Froude-scaled,
-    held against the workspace and the speed limits), a synthetic sea, or an excitation. Ctrl-C ends
-    the run and keeps what was computed as run.partial.
+    held against the workspace and the speed limits), a synthetic sea, or an excitation. A tank is
+    charged and emptied by its valve, as in the flow test. Ctrl-C ends the run and keeps what was
+    computed as run.partial.
     """
     from sms.scenario import command_of, findings_of, load_scenario, run_scenario  # noqa: PLC0415
     from sms.scenario.files import summary_of, write_run  # noqa: PLC0415
+    from sms.scenario.tank import TankRecord, run_tank, tank_findings  # noqa: PLC0415
 
     with bad_input():
         asked = with_scale(load_scenario(scenario, settings_in_si(settings)), scale)
         with progress_bar("preparing the motion") as tell:
             command = command_of(asked)
-            record = run_scenario(asked, command, lambda share: tell("simulating", share))
+            tank = asked.plant == "tank"
+            record = (run_tank if tank else run_scenario)(
+                asked, command, lambda share: tell("simulating", share)
+            )
             if record.time.size < MIN_SAMPLES:
                 raise InputError(f"{scenario}: {record.ended or 'too short'}; nothing was written")
             tell("writing", 1.0)
-            findings = findings_of(asked, command, record)
+            findings = (
+                tank_findings(asked, record)
+                if isinstance(record, TankRecord)
+                else findings_of(asked, command, record)
+            )
             files = write_run(out, asked, command, record, findings)
     if as_json:
         print(json.dumps(summary_of(asked, command, record, findings), indent=1))
@@ -105,15 +114,18 @@ def settings_in_si(settings: list[str]) -> dict[str, float]:
 def end_partial(scenario: Scenario, ended: str, files: list[Path]) -> None:
     """Say that a run is partial, and leave with the code of Ctrl-C or of bad input."""
     from sms.scenario.load import TOLERANCES  # noqa: PLC0415
-    from sms.scenario.plant import INTERRUPTED  # noqa: PLC0415
+    from sms.scenario.plant import INTERRUPTED, MISSED  # noqa: PLC0415
 
     if ended == INTERRUPTED:
         print(f"sms: stopped; {files[0]} holds what was computed until then", file=sys.stderr)
         raise typer.Exit(INTERRUPTED_CODE)
-    raise InputError(
-        f"{scenario.path}, [model] tolerance: {ended}; {TOLERANCES[0]:g} to {TOLERANCES[1]:g} is "
-        f"allowed, a larger one may get through; {files[0]} holds what was computed until then"
-    )
+    kept = f"{files[0]} holds what was computed until then"
+    if ended.startswith(MISSED):
+        raise InputError(
+            f"{scenario.path}, [model] tolerance: {ended}; {TOLERANCES[0]:g} to {TOLERANCES[1]:g} "
+            f"is allowed, a larger one may get through; {kept}"
+        )
+    raise InputError(f"{scenario.path}, [parameters]: {ended}; {kept}")
 
 
 def sweep(

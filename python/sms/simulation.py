@@ -1,6 +1,6 @@
-"""Simulated runs of one actuator on the bench and of the platform, with or without a controller.
+"""Simulated runs of one actuator on the bench, of the platform and of the flow test's tank.
 
-The plants are in libsms/include/sms: actuator.hpp, bench.hpp, platform.hpp; the sampled loop around
+The plants are in libsms/include/sms: actuator.hpp, bench.hpp, platform.hpp, tank.hpp; the sampled loop around
 them in simulate.hpp, its integrator in integrate_adaptive.hpp. A run is a table: one row a control
 period, taken when the controller takes its sample.
 
@@ -31,6 +31,7 @@ VALVE_LAWS = ("iso_0_4_mpa", "iso_0_2_mpa", "classic")
 FRICTION_LAWS = ("acceleration_dependent", "two_branch", "stribeck", "dahl", "lugre")
 CHAMBER_LAWS = ("polytropic", "energy")
 CONTROLLERS = ("open_loop", "pid", "state_feedback")
+_NOT_CONVERGED = 4  # SMS_NOT_CONVERGED of sms.h
 MEAN_PRESSURE = 333e3
 """Pa absolute, mean of both chambers where a run begins: what SPEC measures near mid-stroke."""
 BENCH_TOLERANCE = 1e-6
@@ -64,11 +65,16 @@ class Run:
 
 
 class SimulationStoppedError(_core.StatusError):
-    """A run that could not go on; `run` is what was computed before."""
+    """A run that could not go on; `run` is what was computed before.
 
-    def __init__(self, message: str, run: Run) -> None:
+    `converged`: False where the integrator's step would have had to be too small; otherwise the
+    plant itself has an end there, which the message names.
+    """
+
+    def __init__(self, message: str, run: Run, converged: bool) -> None:
         super().__init__(message)
         self.run = run
+        self.converged = converged
 
 
 class SimulationInterruptedError(KeyboardInterrupt):
@@ -189,6 +195,46 @@ def simulate_platform(
     return _run(simulation, setpoint, noise, load, float(own["control_period"]), progress)
 
 
+def simulate_tank(
+    command: ArrayLike,
+    *,
+    valve_law: str = "iso_0_4_mpa",
+    chamber_law: str = "polytropic",
+    params: Params | None = None,
+    tolerance: float = BENCH_TOLERANCE,
+    step: float = 0.0,
+    progress: Progress | None = None,
+) -> Run:
+    """The tank of the flow test behind one port of the valve, closed before; it begins at
+    params.tank_initial_pressure.
+
+    Args:
+        command: V at the valve, one a control period, (n,); above params.valve_centre the supply
+            charges the tank, below it the tank empties to ambient.
+        valve_law: "iso_0_4_mpa", "iso_0_2_mpa" (the tables' supply) or "classic".
+        chamber_law: "polytropic" (eq. 5.5) or "energy" (temperature a state, heat of the wall).
+        params: of valve and tank.
+        tolerance: error estimate of one integrator step, relative; not used with `step`.
+        step: s; if positive, fixed Runge-Kutta steps of at most this size.
+        progress: called with the part that is done.
+
+    Columns: tank_pressure, tank_temperature, mass_flow (into the tank), supply_pressure,
+    valve_command, spool_voltage, spool_rate. Equations: tank.hpp. Raises: as `simulate_bench`.
+    """
+    params = params or Params()
+    volts = _columns("command", command, 1)
+    simulation = _core.TankSimulation(
+        params=params,
+        valve_law=valve_law,
+        chamber_law=chamber_law,
+        pressure=params.tank_initial_pressure,
+        tolerance=tolerance,
+        step=step,
+    )
+    nothing = np.zeros((len(volts), 1))
+    return _run(simulation, volts, 0.0, nothing, params.control_period, progress)
+
+
 def extensions_of(
     roll: ArrayLike, pitch: ArrayLike, height: ArrayLike, *, params: Params | None = None
 ) -> Array:
@@ -220,7 +266,7 @@ def _columns(name: str, values: ArrayLike, width: int) -> Array:
 
 
 def _run(
-    simulation: _core.BenchSimulation | _core.PlatformSimulation,
+    simulation: _core.BenchSimulation | _core.PlatformSimulation | _core.TankSimulation,
     setpoint: Array,
     noise: ArrayLike,
     load: Array,
@@ -257,6 +303,7 @@ def _run(
             f"the run stops at {simulation.time:.6g} s of {n * period:.6g} s: "
             f"{simulation.why(status)}",
             run,
+            converged=status != _NOT_CONVERGED,
         )
     return run
 

@@ -19,7 +19,7 @@ from sms.io import InputError
 from sms.report.scene import scene_of
 from sms.report.simulation import simulation_html
 from sms.scenario import command_of, findings_of, load_scenario, run_scenario
-from sms.scenario.plant import INTERRUPTED
+from sms.scenario.plant import INTERRUPTED, MISSED, why_it_stopped
 from sms.scenario.schema import (
     EXCITATIONS,
     ControllerTable,
@@ -139,6 +139,63 @@ frequency = "1 Hz"
         .partition("plot-data")[2]
         .partition("</script>")[0]
     )
+
+
+FLOW_TEST = """
+[scenario]
+title = "a flow test"
+plant = "tank"
+duration = "6 s"
+
+[excitation]
+kind = "steps"
+axis = "actuators"
+amplitude = "2 V"
+levels = [0, 1, -1]
+hold = "2 s"
+
+[parameters]
+tank_volume = "2 l"
+"""
+
+
+def test_a_flow_test_charges_and_empties_the_tank(tmp_path: Path) -> None:
+    path = scenario(tmp_path, FLOW_TEST)
+    said = command("simulate", path.name, "--out", "out", cwd=tmp_path)
+    assert said.returncode == 0, said.stderr
+    table = pd.read_csv(tmp_path / "out" / "run.csv")
+    summary = json.loads((tmp_path / "out" / "run.json").read_text())
+    pressure, flow = table["tank_pressure [Pa]"], table["mass_flow [kg/s]"]
+    assert pressure[0] == pytest.approx(86e3)
+    assert pressure[:190].max() == pytest.approx(86e3)  # closed
+    assert pressure.max() == pytest.approx(486e3, rel=1e-3)
+    assert flow[210] > 0.0 > flow[410]
+    # what has entered since is what is there, by the one ratio of heat that each way has
+    entered = np.trapezoid(flow[:400], table["time [s]"][:400])
+    assert entered * 1.4 * 288.0 * 293.0 / 2e-3 == pytest.approx(pressure[399] - 86e3, rel=1e-2)
+    assert "has 0.860 bar to 4.86 bar, and ends at 0.860 bar" in said.stdout
+    assert "out of the tank" in said.stdout
+    assert summary["arrived_s"] is not None
+    assert "Pressure in the tank" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_a_step_that_cannot_meet_its_tolerance_is_said_with_the_tolerance(tmp_path: Path) -> None:
+    asked = load_scenario(scenario(tmp_path))
+    run = sms.simulate_bench(np.full(3, 5.0))
+    stopped = sms.SimulationStoppedError("the run stops at 1 s", run, converged=False)
+    assert why_it_stopped(asked, stopped) == f"{MISSED} of 1e-07 (the run stops at 1 s)"
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ('[controller]\nkind = "pid"', "has no controller"),
+        ('[model]\nchamber_law = "cold"', "chamber_law"),
+    ],
+)
+def test_a_flow_test_refuses_what_a_tank_has_not(tmp_path: Path, changed: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        load_scenario(scenario(tmp_path, f"{FLOW_TEST}\n{changed}\n"))
 
 
 def test_a_loop_that_oscillates_on_its_own_is_called_so(tmp_path: Path) -> None:
@@ -272,7 +329,7 @@ def test_at_the_prompt_bad_input_is_one_sentence_and_nothing_is_written(tmp_path
 # ---- runs that end early ----
 
 
-def test_a_step_that_cannot_meet_its_tolerance_ends_a_partial_run(tmp_path: Path) -> None:
+def test_a_run_that_cannot_go_on_is_kept_as_a_partial_one(tmp_path: Path) -> None:
     text = """
 [scenario]
 duration = "1 s"
@@ -285,7 +342,7 @@ amplitude = "4 V"
 levels = [1.0]
 hold = "1 s"
 [parameters]
-dead_volume_lower = "0 m^3"    # no air is left at the end of the stroke
+dead_volume_lower = "0 m^3"    # no room is left at the end of the stroke
 dead_volume_upper = "0 m^3"
 """
     scenario(tmp_path, text)
@@ -293,7 +350,8 @@ dead_volume_upper = "0 m^3"
     (tmp_path / "out/run.csv").write_text("of an earlier run")
     result = command("simulate", "scenario.toml", "--out", "out", cwd=tmp_path)
     assert result.returncode == 2
-    assert "[model] tolerance: a step could not meet its tolerance of 1e-07" in result.stderr
+    assert "[parameters]: the run stops at " in result.stderr
+    assert "a chamber has no volume left; dead_volume_lower" in result.stderr
     names = sorted(path.name for path in (tmp_path / "out").iterdir())
     assert names == ["report.html", "run.partial.csv", "run.partial.json"]
     assert "Partial run" in (tmp_path / "out/report.html").read_text(encoding="utf-8")

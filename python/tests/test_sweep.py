@@ -14,7 +14,7 @@ from sms.sweep.run import PARTIAL, WHOLE, evaluate
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
 from test_cli_mechanism import run
-from test_scenario import DAMPED, ROLL
+from test_scenario import DAMPED, FLOW_TEST, ROLL
 
 PLAN = """
 [sweep]
@@ -54,6 +54,21 @@ def test_grids_multiply_and_distributions_are_drawn(tmp_path: Path) -> None:
     assert np.array_equal(found.values, load_sweep(plan(tmp_path, many)).values)
     other = load_sweep(plan(tmp_path, many.replace("seed = 7", "seed = 8")))
     assert not np.array_equal(found.values, other.values) and found.digest != other.digest
+
+
+@pytest.mark.parametrize("kind", ["drawn", "grid"])
+def test_distributions_alone_and_grids_alone(tmp_path: Path, kind: str) -> None:
+    drawn, grid = PLAN.rindex("[vary.payload_mass]"), PLAN.rindex("[vary.supply_pressure]")
+    text = PLAN[:grid] if kind == "drawn" else PLAN[:drawn] + PLAN[grid:]
+    found = load_sweep(plan(tmp_path, text))
+    assert found.values.shape == ((3, 2) if kind == "drawn" else (2, 1))
+
+
+def test_a_tank_has_no_motion_to_sweep(tmp_path: Path) -> None:
+    path = plan(tmp_path)
+    (tmp_path / "scenario.toml").write_text(FLOW_TEST)
+    with pytest.raises(InputError, match="'tank' has no motion to sweep"):
+        load_sweep(path)
 
 
 def test_on_two_cores_the_same_as_one_after_the_other(tmp_path: Path) -> None:

@@ -6,7 +6,8 @@
 // into the middle of a period: the integration stops there, so that a jump is never inside a step. The electronics can
 // be left out as a whole; then the controller sees the extension and the valve its command.
 //
-// The same loop serves one actuator on the bench and three under the platform. It allocates nothing.
+// The same loop serves one actuator on the bench and three under the platform, and, open, the tank of the flow test. It
+// allocates nothing.
 #pragma once
 
 #include "sms/bench.hpp"
@@ -14,6 +15,7 @@
 #include "sms/integrate_adaptive.hpp"
 #include "sms/platform.hpp"
 #include "sms/position_loop.hpp"
+#include "sms/tank.hpp"
 
 namespace sms {
 

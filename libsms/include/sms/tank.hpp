@@ -11,6 +11,8 @@
 // isothermal tank (0) and the full energy equation with heat through the wall (1). Valid for p, T > 0.
 #pragma once
 
+#include <algorithm>
+
 #include "sms/actuator.hpp"
 
 namespace sms {
@@ -39,6 +41,11 @@ struct TankTerms {
 
 template <typename S>
 struct Tank {
+  using Scalar = S;
+  using State = TankState<S>;
+  using Input = TankInput<S>;
+  using Terms = TankTerms<S>;
+  static constexpr int legs = 1;  // one valve
   Params<S> params;
   ActuatorLaws laws;  // of valve and chamber
 };
@@ -127,10 +134,44 @@ sms_status derivative(const Tank<S>& tank, const TankState<S>& state, const Tank
   return is_finite(rate.gas.pressure) ? SMS_OK : SMS_NOT_A_NUMBER;
 }
 
+// What of the rates depends on the input alone, for a command that has jumped.
+template <typename S>
+void renew_command(const Tank<S>& tank, const TankState<S>& state, const TankInput<S>& input, TankState<S>& rate) {
+  rate.spool = spool_rate(tank.params, state.spool, input.command);
+}
+
 // The valve closed, the reservoir full.
 template <typename S>
 TankState<S> tank_at_rest(const Params<S>& p, const S& pressure) {
   return {{pressure, p.air_temperature}, {p.valve_centre, S(0)}, p.supply_pressure};
+}
+
+template <typename S>
+void prepare(const Tank<S>&, TankTerms<S>&) {}
+
+template <typename S>
+TankState<S> state_scale(const Tank<S>&) {
+  const ActuatorState<S> actuator = actuator_scale<S>();
+  return {actuator.lower, actuator.spool, actuator.supply_pressure};
+}
+
+// Of an actuator's switches a tank has those of the valve.
+template <typename S>
+void switches(const Tank<S>& tank, const TankState<S>& state, const TankTerms<S>&,
+              S (&value)[actuator_switch_count()]) {
+  std::fill_n(value, actuator_switch_count(), S(1));
+  valve_switches<S>(tank.params, tank.laws.valve, state.spool.value, value);
+}
+
+// What a plant is asked by whoever closes a loop around it: there is no piston, and a tank runs in an open loop.
+template <typename S>
+S extension_of(const TankState<S>&, const TankTerms<S>&, int) {
+  return S(0);
+}
+
+template <typename S>
+void set_command(TankInput<S>& input, int, const S& command) {
+  input.command = command;
 }
 
 }  // namespace sms

@@ -12,24 +12,32 @@ from sms.report.markup import esc, section, table
 from sms.report.page import asset, page, plots
 from sms.report.plots import Figure, Line, figures_html, payload
 from sms.report.scene import LONGEST, scene_of
+from sms.report.tank import tank_figures
 from sms.requirements.table import ACCURACY
 from sms.rows import Array
 from sms.scenario.findings import Findings
 from sms.scenario.load import Scenario
 from sms.scenario.record import Record
 from sms.scenario.sent import Command
+from sms.scenario.tank import TankFindings, TankRecord
 from sms.units_display import format_quantity, words
 
 _COLOURS = ("extended", "baseline", "good")
 
 
 def simulation_html(
-    scenario: Scenario, command: Command, record: Record, findings: Findings
+    scenario: Scenario,
+    command: Command,
+    record: Record | TankRecord,
+    findings: Findings | TankFindings,
 ) -> str:
     """The whole page, about 5 MB, of which plotly.js is 4.8 MB."""
-    figures = [*_attitude(command, record), *_actuators(scenario, record)]
+    if isinstance(record, TankRecord):
+        figures, scene = tank_figures(scenario, record), None
+    else:
+        figures = [*_attitude(command, record), *_actuators(scenario, record)]
+        scene = scene_of(record, scenario.params)
     data: dict[str, Any] = payload(figures)
-    scene = scene_of(record, scenario.params)
     if scene is not None:
         data["scene"] = scene
     listed = "".join(f"<li>{esc(text)}</li>" for text in findings.sentences)
@@ -42,7 +50,7 @@ def simulation_html(
             else ""
         )
         + f"<ul class='findings-list'>{listed}</ul>"
-        + (_scene_section(record) if scene is not None else "")
+        + (_scene_section(record.time) if scene is not None else "")
         + section("signals", "Signals", figures_html(figures))
         + section("setup", "What was simulated", _setup(scenario, command))
         + f"<p class='small'>sms {_core.__version__}; {esc(scenario.path.name)}</p></main>"
@@ -51,9 +59,9 @@ def simulation_html(
     return page(scenario.title, body, scripts, asset("plots.css"))
 
 
-def _scene_section(record: Record) -> str:
+def _scene_section(time: Array) -> str:
     lead = "Drag to turn it. The legs' colour is the pressure in the lower chamber."
-    if record.time[-1] > LONGEST:
+    if time[-1] > LONGEST:
         lead += f" Shown are the {LONGEST:.0f} s around the largest tilt."
     place = "<div id='scene' role='img' aria-label='The platform moving in three dimensions'></div>"
     return section("motion", "The platform moving", f"<figure class='wide'>{place}</figure>", lead)
@@ -153,15 +161,17 @@ def _actuators(scenario: Scenario, record: Record) -> list[Figure]:
 
 def _setup(scenario: Scenario, command: Command) -> str:
     model = scenario.model
+    laws = f"valve {words(model.valve_law)}, air {model.chamber_law}"
+    if scenario.plant != "tank":
+        laws += f", friction {words(model.friction_law)}, masses {model.masses}"
     rows = [
         ("motion", " ".join(command.words)),
         ("plant", scenario.plant),
-        ("controller", scenario.controller + (", compensated" if scenario.compensated else "")),
         (
-            "laws",
-            f"valve {words(model.valve_law)}, friction {words(model.friction_law)}, chambers "
-            f"{model.chamber_law}, masses {model.masses}",
+            "controller",
+            words(scenario.controller) + (", compensated" if scenario.compensated else ""),
         ),
+        ("laws", laws),
         ("tolerance", f"{model.tolerance:g} a step, controller every {1e3 * scenario.period:g} ms"),
     ]
     rows += [

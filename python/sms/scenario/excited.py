@@ -22,7 +22,7 @@ def excited(scenario: Scenario, table: ExcitationTable) -> Command:
     count = round(scenario.duration / scenario.period) + 1
     time: Array = scenario.period * np.arange(float(count))
     axis: str = table.axis
-    if scenario.plant == "bench" or scenario.controller == "open_loop":
+    if scenario.plant != "platform" or scenario.controller == "open_loop":
         if axis not in ("actuators", "heave"):
             raise InputError(
                 f"{scenario.where('excitation', 'axis')}: '{axis}' needs the whole platform under a "
@@ -37,7 +37,7 @@ def excited(scenario: Scenario, table: ExcitationTable) -> Command:
 def _each_actuator(scenario: Scenario, table: ExcitationTable, time: Array) -> Command:
     """Volts, or extensions about the start."""
     unit = "V" if scenario.controller == "open_loop" else "m"
-    width = 1 if scenario.plant == "bench" else 3
+    width = 3 if scenario.plant == "platform" else 1
     amplitudes = _amplitudes(scenario, table, unit, width)
     values = np.column_stack([_signal(scenario, table, time, a, unit) for a in amplitudes])
     if unit == "V":
@@ -46,7 +46,8 @@ def _each_actuator(scenario: Scenario, table: ExcitationTable, time: Array) -> C
     else:
         values = values + _rest_extension(scenario, width)
         _check_stroke(scenario, time, values)
-    words = (f"{_words(table)} on each actuator, in {unit}.",)
+    where = "the valve" if scenario.plant == "tank" else "each actuator"
+    words = (f"{_words(table)} on {where}, in {unit}.",)
     return Command(time, values, unit, None, None, words)
 
 

@@ -17,10 +17,15 @@ from sms.scenario.findings import Findings
 from sms.scenario.load import Scenario
 from sms.scenario.record import Record
 from sms.scenario.sent import Command
+from sms.scenario.tank import TankFindings, TankRecord
 
 
 def write_run(
-    out: Path, scenario: Scenario, command: Command, record: Record, findings: Findings
+    out: Path,
+    scenario: Scenario,
+    command: Command,
+    record: Record | TankRecord,
+    findings: Findings | TankFindings,
 ) -> list[Path]:
     """Write the record (CSV or Parquet), run.json and report.html; a partial run says so by name.
 
@@ -51,7 +56,10 @@ def write_run(
 
 
 def summary_of(
-    scenario: Scenario, command: Command, record: Record, findings: Findings
+    scenario: Scenario,
+    command: Command,
+    record: Record | TankRecord,
+    findings: Findings | TankFindings,
 ) -> dict[str, Any]:
     """For programs: what was run and what came out, SI units."""
     return {

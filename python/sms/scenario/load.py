@@ -38,7 +38,7 @@ class Scenario:
     path: Path
     title: str
     notes: str
-    plant: str  #: "platform" or "bench"
+    plant: str  #: "platform", "bench" or "tank"
     params: Params
     changed: Mapping[str, float]  #: parameters other than their defaults, SI
     model: ModelTable
@@ -95,6 +95,7 @@ def scenario_from(
             f"{low:g} to {high:g}"
         )
     height, extension, load_force = _start(file, params, path)
+    controller = "open_loop" if file.scenario.plant == "tank" else file.controller.kind
     every = within(file.output.every, "s", 0.0, LONGEST, f"{path}, [output] every", above=True)
     return Scenario(
         path=path,
@@ -104,8 +105,8 @@ def scenario_from(
         params=params,
         changed=changed,
         model=file.model,
-        controller=file.controller.kind,
-        compensated=file.controller.compensated,
+        controller=controller,
+        compensated=file.controller.compensated and controller != "open_loop",
         height=height,
         extension=extension,
         load_force=load_force,
@@ -162,6 +163,14 @@ def _check_one_motion(file: ScenarioFile, path: Path) -> None:
         )
     if given[0] == "excitation" and file.scenario.duration is None:
         raise InputError(f"{path}, [scenario]: the key 'duration' is missing; add \"20 s\" or so")
+    if file.scenario.plant == "tank" and (
+        given[0] != "excitation"
+        or ("kind" in file.controller.model_fields_set and file.controller.kind != "open_loop")
+    ):
+        raise InputError(
+            f"{path}, [scenario] plant: a tank's valve is opened by an [excitation] in volts and has "
+            "no controller; leave [controller], [deck_motion] and [sea] out"
+        )
     if given[0] != "excitation" and file.controller.kind == "open_loop":
         raise InputError(
             f"{path}, [controller] kind: 'open_loop' sends volts, a deck's motion is a pose; "

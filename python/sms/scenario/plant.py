@@ -20,6 +20,7 @@ from sms.simulation import (
 )
 
 INTERRUPTED = "stopped by Ctrl-C"
+MISSED = "a step could not meet its tolerance"
 _LEGS = ("1", "2", "3")
 
 
@@ -28,17 +29,25 @@ def run_scenario(
 ) -> Record:
     """Simulate; a run that is stopped by Ctrl-C or by the integrator is kept as far as it came.
 
-    `progress` is told the share that is done.
+    `progress` is told the share that is done. Raises: ValueError for a tank, which `run_tank` runs.
     """
+    if scenario.plant == "tank":
+        raise ValueError(f"{scenario.path}: a tank has no motion; run_tank simulates it")
     planned = float(command.time[-1])
     try:
         run, ended = _simulated(scenario, command, progress), ""
     except SimulationInterruptedError as stopped:
         run, ended = stopped.run, INTERRUPTED
     except SimulationStoppedError as stopped:
-        run = stopped.run
-        ended = f"a step could not meet its tolerance of {scenario.model.tolerance:g} ({stopped})"
+        run, ended = stopped.run, why_it_stopped(scenario, stopped)
     return _record(scenario, command, run, planned, ended)
+
+
+def why_it_stopped(scenario: Scenario, stopped: SimulationStoppedError) -> str:
+    """Why a run ended early, in words."""
+    if stopped.converged:
+        return str(stopped)
+    return f"{MISSED} of {scenario.model.tolerance:g} ({stopped})"
 
 
 def _simulated(

@@ -16,7 +16,7 @@ class ScenarioTable(Table):
 
     title: str = ""
     notes: str = ""
-    plant: Literal["platform", "bench"] = "platform"
+    plant: Literal["platform", "bench", "tank"] = "platform"
     duration: TextOrNumber | None = None
 
 
@@ -40,7 +40,7 @@ class ModelTable(Table):
 
 
 class ControllerTable(Table):
-    """[controller]: what drives the valves; its gains are parameters."""
+    """[controller]: what drives the valves; its gains are parameters. A tank's valve has none."""
 
     kind: Literal["state_feedback", "pid", "open_loop"] = "pid"
     compensated: bool = True

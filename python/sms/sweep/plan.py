@@ -93,7 +93,8 @@ def load_sweep(path: Path) -> Sweep:
             grids[name] = [parameter_value(name, value, f"{where} grid") for value in entry.grid]
         else:
             drawn[name] = entry
-    points = np.array(list(itertools.product(*grids.values()))).reshape(-1, len(grids))
+    nodes = list(itertools.product(*grids.values()))  # one, of nothing, where there is no grid
+    points = np.array(nodes, dtype=np.float64).reshape(len(nodes), len(grids))
     samples = file.sweep.samples if drawn else 1
     if len(points) * samples > MOST:
         raise InputError(f"{path}: {len(points) * samples} variants; {MOST} are allowed at most")
@@ -103,7 +104,12 @@ def load_sweep(path: Path) -> Sweep:
         columns.append(_quantile(share, name, entry, f"{path}, [vary.{name}]"))
     names = (*grids, *drawn)
     sweep = Sweep(path, scenario, tables, names, np.column_stack(columns))
-    scenario_from(tables, scenario, sweep.settings(0))  # what is wrong for all is said at once
+    # what is wrong for all is said at once
+    first = scenario_from(tables, scenario, sweep.settings(0))
+    if first.plant == "tank":
+        raise InputError(
+            f"{scenario}, [scenario] plant: 'tank' has no motion to sweep; allowed are platform, bench"
+        )
     return sweep
 
 

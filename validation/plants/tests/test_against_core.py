@@ -255,6 +255,22 @@ def test_tank_that_exchanges_no_heat_gets_warm_while_it_fills() -> None:
     assert states[-1, 1] == pytest.approx(1.4 * 293.0, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    "laws",
+    [{}, {"valve_law": "iso_0_2_mpa", "chamber_law": "energy"}, {"valve_law": "classic"}],
+)
+def test_tank_is_charged_and_emptied_as_the_second_writing_says(laws: dict[str, str]) -> None:
+    params = Params(control_period=0.01, heat_transfer_coefficient=40.0)
+    volts = np.repeat([5.0, 7.0, 4.0, 2.0], 100)
+    run = sms.simulate_tank(volts, params=params, **laws)
+    start = np.array([params.tank_initial_pressure, params.air_temperature, 5.0, 0.0])
+    reference = tank.simulate(params, start, volts, **laws)
+    span = np.maximum(np.ptp(reference, axis=0), [1.0, 1.0, 1.0, 1.0])
+    largest = np.max(np.abs(run.rows[:, :4] - reference) / span, axis=0)
+    assert np.all(largest[:3] < 2.0 * AGREEMENT)
+    assert np.ptp(run["tank_pressure"]) > 1e5
+
+
 # What must hold whatever the reference
 
 
