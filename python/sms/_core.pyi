@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'simulate_tank', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'simulate_tank', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -1816,6 +1816,10 @@ class BenchSimulation:
         """
         (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
         """
+    def why(self, status: typing.SupportsInt | typing.SupportsIndex) -> str:
+        """
+        What a status of advance() means for this plant, in words.
+        """
     @property
     def columns(self) -> list[str]:
         """
@@ -1850,6 +1854,49 @@ class PlatformSimulation:
     def advance(self, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], load: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
         """
         (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
+        """
+    def why(self, status: typing.SupportsInt | typing.SupportsIndex) -> str:
+        """
+        What a status of advance() means for this plant, in words.
+        """
+    @property
+    def columns(self) -> list[str]:
+        """
+        What each column of a row is.
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Of the plant's derivative, so far.
+        """
+    @property
+    def rejected(self) -> int:
+        """
+        Steps that were tried again smaller, so far.
+        """
+    @property
+    def steps(self) -> int:
+        """
+        Of the integrator, so far.
+        """
+    @property
+    def time(self) -> float:
+        """
+        s, where the plant is.
+        """
+class TankSimulation:
+    """
+    The tank of the flow test behind its valve (tank.hpp).
+    """
+    def __init__(self, *, params: Params, valve_law: str, chamber_law: str, pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def advance(self, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], load: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+        """
+        (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
+        """
+    def why(self, status: typing.SupportsInt | typing.SupportsIndex) -> str:
+        """
+        What a status of advance() means for this plant, in words.
         """
     @property
     def columns(self) -> list[str]:
@@ -2172,25 +2219,6 @@ class TankPlantProblem(Problem):
     @property
     def windows(self) -> list[Window]:
         ...
-class SpoolRecord:
-    """
-    Command and measured spool position, evenly sampled; (n,), SI.
-    """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
-        ...
-    @property
-    def first_compared(self) -> int:
-        """
-        Sample from which on positions are compared; before it the spool is run up.
-        """
-class SpoolProblem(Problem):
-    """
-    Predicted less measured spool position, m.
-    """
-    def __init__(self, records: collections.abc.Sequence[SpoolRecord], law: str = 'cubic') -> None:
-        """
-        law: cubic (eq. 4.1) or linear (eq. 4.2).
-        """
 class Fit:
     """
     The result of a least-squares fit.
