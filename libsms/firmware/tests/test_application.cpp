@@ -240,6 +240,34 @@ TEST_CASE("application: a capture holds what the telemetry said") {
   }
 }
 
+TEST_CASE("parameters: every name leads to its own place, and no other word does") {
+  fw::Parameters p;
+#define SMS_PARAM(name, unit, least, value, most, uncertainty, source, doc)   \
+  CHECK(fw::parameter_index(#name) == sms::index_of_##name);                  \
+  CHECK(fw::parameter(p, sms::index_of_##name) == &p.machine.name);           \
+  CHECK_FALSE(fw::is_live(sms::index_of_##name));                             \
+  CHECK(p.machine.name >= fw::parameter_bounds(sms::index_of_##name)->lower); \
+  CHECK(p.machine.name <= fw::parameter_bounds(sms::index_of_##name)->upper);
+#include "sms/params.def"
+#define SMS_SETTING(name, unit, least, value, most, live, doc)                \
+  CHECK(fw::parameter_index(#name) == fw::index_of_##name);                   \
+  CHECK(fw::parameter(p, fw::index_of_##name) == &p.settings.name);           \
+  CHECK(fw::is_live(fw::index_of_##name) == ((live) != 0));                   \
+  CHECK(p.settings.name >= fw::parameter_bounds(fw::index_of_##name)->lower); \
+  CHECK(p.settings.name <= fw::parameter_bounds(fw::index_of_##name)->upper);
+#include "settings.def"
+  for (const char* word : {"", "position", "position_gain_", "osition_gain", "level"}) {
+    CAPTURE(word);
+    CHECK(fw::parameter_index(word) == -1);
+  }
+  for (const int index : {-1, int(sms::param_count), int(fw::first_setting) - 1, int(fw::end_of_settings)}) {
+    CAPTURE(index);
+    CHECK(fw::parameter_bounds(index) == nullptr);
+    CHECK(fw::parameter(p, index) == nullptr);
+    CHECK_FALSE(fw::is_live(index));
+  }
+}
+
 TEST_CASE("application: random frames have no effect on the outputs") {
   // Two applications, one host; one of them also hears noise. Its outputs have to stay the same to the bit.
   sms_test::Random random;
