@@ -156,6 +156,26 @@ def test_a_leak_past_the_piston_is_named_with_its_size(tmp_path: Path) -> None:
     assert all(g.extended_rms < 1.3 * g.noise_floor for g in answer.gain)
 
 
+def test_an_estimate_beyond_all_reason_promises_what_it_takes_within() -> None:
+    """Two footprints, the second weak: alone its linear step would take all, by a size nobody believes."""
+    rng = np.random.default_rng(5)
+    block = np.repeat(np.arange(20), 30)
+    wave = np.sin(np.arange(600) / 7.0)
+    residual = -wave + rng.normal(0.0, 0.01, 600)
+    footprint = np.column_stack([wave + 0.3 * np.cos(np.arange(600) / 3.0), 1e-3 * wave])
+    none = Nuisance([], np.empty((600, 0)), np.empty(0), np.empty(0))
+    allowed = np.ones((2, 2), dtype=np.bool_)
+    found = screen(footprint, none, residual, block, allowed, rng, draws=99)
+    assert found.gain[1] > found.gain[0]
+    promise = found.promise(np.array([-10.0, -10.0]), np.array([10.0, 10.0]))
+    assert promise[0] == pytest.approx(found.gain[0])
+    step = 10.0 * 1e-3 * wave
+    assert promise[1] == pytest.approx(
+        residual @ residual - np.sum((residual + step) ** 2), rel=0.01
+    )
+    assert promise[0] > promise[1]
+
+
 def test_a_kind_that_cannot_be_diagnosed_yet_says_so(tmp_path: Path) -> None:
     path = write_bench(tmp_path, 3, {})
     text = path.read_text() + '\n[control]\nloop = "closed"\ncontroller = "simulated"\n'

@@ -18,6 +18,8 @@ WORTH = 0.01
 """Least share of the original squared error beyond the noise floor that a cause must take on unseen records."""
 WORTH_OF_NOISE = 0.02
 """The same, as a share of the noise floor itself: a healthy machine has hardly any error beyond it."""
+WORTH_OF_LEFT = 0.5
+"""Share of what the model as it stands leaves beyond the noise, which is worth a name whatever the original was."""
 ALIKE = 0.95
 """Cosine of two footprints in the data above which two effects cannot be told apart."""
 
@@ -71,7 +73,10 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
     if trial.gain_interval[0] <= 0.0:
         return "does not help on the records it has not seen"
     worth = float(np.mean(before) - np.mean(trial.squared))
-    if worth < yardstick.least_worth:
+    least = yardstick.least_worth
+    if data.validate.whitened:  # a large error that is already named must not hide a second one
+        least = min(least, WORTH_OF_LEFT * max(float(np.mean(before)) - yardstick.floor, 0.0))
+    if worth < max(least, WORTH_OF_NOISE * yardstick.floor):
         return "real, but worth next to nothing on the records it has not seen"
     for number, name_ in enumerate(m.name for m in data.validate.motions):
         rows = data.validate.record == number

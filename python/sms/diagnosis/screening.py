@@ -40,6 +40,13 @@ class Screen:
     gain: Array
     """Chi-square that the linear estimate takes away."""
 
+    def promise(self, lower: Array, upper: Array) -> Array:
+        """(m,): the gain where the shifts stay within (m,) bounds: an estimate beyond all reason promises little."""
+        step = np.clip(self.estimate, lower, upper)
+        size = np.sum(self.footprint**2, axis=0)
+        within = size * step * (2.0 * self.estimate - step)
+        return np.asarray(np.where(self.gain > 0.0, np.maximum(within, 0.0), 0.0))
+
     @property
     def cosine(self) -> Array:
         """(m, m): similarity of footprints, 0..1."""

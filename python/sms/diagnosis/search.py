@@ -88,16 +88,17 @@ def screen_effects(
     nuisance = nuisance_of(current)
     columns = raw_columns(current, data.identify, effects)
     footprint = project(nuisance, columns, [e.parameters[0] for e in effects])
-    allowed = np.array([_allowed_signs(e, current, data.rig) for e in effects])
+    room = np.array([_room(e, current, data.rig) for e in effects])
+    allowed = np.column_stack([room[:, 0] < 0.0, room[:, 1] > 0.0])
     return screen(footprint, nuisance, current.fit.residual, data.identify.block, allowed, rng)
 
 
-def _allowed_signs(effect: Effect, current: Fitted, rig: Rig) -> tuple[bool, bool]:
-    """Whether the effect's parameter may still fall, and rise."""
+def _room(effect: Effect, current: Fitted, rig: Rig) -> tuple[float, float]:
+    """By how much the effect's parameter may still fall (negative), and rise."""
     name = effect.parameters[0]
     low, high = effect.plausible_range(rig.declared(common_parameter(name)).value)
     low, high = max(low, rig.table[name].lower), min(high, rig.table[name].upper)
-    return current.params[name] > low, current.params[name] < high
+    return low - current.params[name], high - current.params[name]
 
 
 def _try_on_runs(
@@ -105,11 +106,13 @@ def _try_on_runs(
 ) -> list[Trial]:
     """All effects are screened; those that speak loudest are fitted in full."""
     found = screen_effects(current, data, effects, rng)
+    room = np.array([_room(e, current, data.rig) for e in effects])
+    promise = found.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     before = unseen(current, data) ** 2
     promising = [
         int(k)
-        for k in np.argsort(-found.gain)[:MOST_FITS]
-        if found.p_value[k] <= SIGNIFICANT and found.gain[k] > WORTH_A_FIT * found.gain.max()
+        for k in np.argsort(-promise)[:MOST_FITS]
+        if found.p_value[k] <= SIGNIFICANT and promise[k] > WORTH_A_FIT * promise.max()
     ]
     fits = {
         k: fit(
