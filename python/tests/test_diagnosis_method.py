@@ -12,6 +12,7 @@ from sms.diagnosis.catalogue import catalogue
 from sms.diagnosis.excitation import CHECKS
 from sms.diagnosis.files import write_diagnosis
 from sms.diagnosis.prepare import derive_motion, number_strokes
+from sms.diagnosis.report import report_html
 from sms.io.errors import InputError
 from sms.io.write import write_record
 from sms.parameters import PARAMETERS
@@ -94,6 +95,27 @@ def test_healthy_records_give_no_evidence(tmp_path: Path) -> None:
 def test_same_seed_same_answer(tmp_path: Path) -> None:
     rig = make_rig(tmp_path, pressure_friction=1e-6)
     assert diagnose(rig, 5).to_dict() == diagnose(rig, 5).to_dict()
+
+
+def test_a_test_record_decides_nothing_and_its_gain_is_reported(tmp_path: Path) -> None:
+    """The whole answer but for gains, curves and records is that without it."""
+    rig = make_rig(tmp_path, pressure_friction=2e-6)
+    text = rig.read_text()
+    first, last = text.rsplit("[[records]]", 1)
+    rig.write_text(first)
+    without = diagnose(rig)
+    rig.write_text(first + "[[records]]" + last.replace("validate", "test"))
+    answer = diagnose(rig)
+    assert answer.causes == without.causes
+    assert answer.candidates == without.candidates
+    assert [g.role for g in answer.gain] == ["validate"] * len(without.gain) + ["test"]
+    assert answer.gain[-1].reduction > 0.5
+    assert "took no part in any choice" in report_html(answer)
+
+
+def test_an_empirical_term_is_refused_where_nothing_is_simulated(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="leave --empirical out"):
+        diagnose(make_rig(tmp_path), empirical=True)
 
 
 @pytest.mark.parametrize(

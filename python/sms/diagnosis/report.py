@@ -55,8 +55,10 @@ def _curves(diagnosis: Diagnosis) -> str:
     lead = (
         "Above the signal, below the error (measured less simulated) on the same axis, with the "
         "noise floor as a band. Rows that are not compared, such as standstill, show the "
-        "measurement alone. Over the extension, the strokes lie on top of each other."
+        "measurement alone."
     )
+    if _drawn_over(diagnosis, "extension"):
+        lead += " Over the extension, the strokes lie on top of each other."
     body = (
         f"{worth.key(diagnosis, 'measured', 'baseline', 'extended', 'floor')}"
         '<div class="buttons" id="records" role="group" aria-label="Record"></div>'
@@ -67,15 +69,22 @@ def _curves(diagnosis: Diagnosis) -> str:
     return section("curves", "Measured and simulated", body, lead)
 
 
+def _drawn_over(diagnosis: Diagnosis, signal: str) -> bool:
+    return any(name.startswith(signal) for s in diagnosis.series for name in s.inputs)
+
+
 def _residuals(diagnosis: Diagnosis) -> str:
     if not diagnosis.series:
         return ""
     lead = (
-        "The error of the compared rows against each signal. Triangles are means, pointing up "
-        "while extending and down while retracting. Means that lie flat on zero leave nothing to "
-        "explain along that signal. Two directions that part point to friction, two that move "
-        "together to a force or a sensor."
+        "The error of the compared rows against each signal. Triangles are means; where they lie flat "
+        "on zero, nothing is left to explain along that signal."
     )
+    if _drawn_over(diagnosis, "direction"):
+        lead += (
+            " They point up while extending and down while retracting. Two directions that part point "
+            "to friction, two that move together to a force or a sensor."
+        )
     body = (
         f"{worth.key(diagnosis, 'baseline', 'extended')}"
         '<div class="buttons" id="groups" role="group" aria-label="Records shown"></div>'

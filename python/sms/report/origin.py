@@ -18,7 +18,7 @@ def origin(diagnosis: Diagnosis) -> str:
     lead = (
         "To each equation of the simulation a hidden term is added that may follow any of the signals. What it takes "
         "alone of the error that is not noise is shown, with its 95 % interval over resampled windows. Shares need not "
-        "add up: air that flows wrongly also moves the piston. No cause is assumed here, so this is a second opinion."
+        "add up: what one equation gets wrong moves the others too. No cause is assumed here: this is a second opinion."
     )
     body = _shares(hidden) + _curve(hidden.shape, "Before the extension")
     left = diagnosis.hidden_left

@@ -28,6 +28,7 @@ _LEGEND = (
 )
 
 
+_FLOOR_OF_A_SIMULATION = "what changes from one moment to the next: no model can explain it"
 TESTED = ' <span class="role">test: took no part in any choice</span>'
 
 
@@ -43,8 +44,9 @@ def key(diagnosis: Diagnosis, *kinds: str) -> str:
 
 def legend(diagnosis: Diagnosis) -> str:
     """The words and colours used on the whole page; without a cause there is no extended model."""
+    simulated = diagnosis.hidden is not None
     items = "".join(
-        f"<dt>{swatch(kind)}{name}</dt><dd>{text}</dd>"
+        f"<dt>{swatch(kind)}{name}</dt><dd>{_FLOOR_OF_A_SIMULATION if kind == 'floor' and simulated else text}</dd>"
         for kind, name, text in _LEGEND
         if diagnosis.causes or kind != "extended"
     )
