@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from sms.diagnosis.catalogue import catalogue
+from sms.diagnosis.catalogue import effects_of
 from sms.diagnosis.hypothesis import Fitted, refitted
 from sms.diagnosis.method import read_and_check
 from sms.diagnosis.plant import investigate, make_data
@@ -44,10 +44,10 @@ def ask(seed: int, sort: str, multiple: float) -> tuple[list[Said], Question]:
         rig = load_rig(records / "rig.toml")
         read, _ = read_and_check(rig)
         data, rng = make_data(rig, read), np.random.default_rng(seed)
-        case = investigate(data, catalogue(rig.kind), rng, lambda text, done: None)
+        case = investigate(data, effects_of(rig), rng, lambda text, done: None)
         truth = open_truth(sealed, records)
     hidden = next((e["key"] for e in truth["effects"]), "none")
-    able, _ = testable(case.baseline, case.data, catalogue("bench"))
+    able, _ = testable(case.baseline, case.data, effects_of(rig))
     before, after = (
         float(np.mean(refitted(f, case.data).fit.residual ** 2))
         for f in (case.baseline, case.outcome.final if case.outcome.named else case.baseline)

@@ -46,6 +46,11 @@ class Said:
         return self.hidden == "none" and self.alarm
 
 
+def _percent(share: float) -> str:
+    number = round(100.0 * share)
+    return f"{number:+d} %" if number else "0 %"
+
+
 def table(said: Sequence[Said], title: str) -> Table:
     """For each sort of trial and each method, how often it said what."""
     out = Table(title=title, title_justify="left", title_style="bold", box=None)
@@ -64,7 +69,7 @@ def table(said: Sequence[Said], title: str) -> Table:
                 method,
                 *(str(c) if c else "." for c in counts),
                 str(sum(s.false_alarm for s in own)) if sort == "healthy" else "",
-                f"{-100.0 * median(gains):+.0f} %" if gains else "-",
+                _percent(-median(gains)) if gains else "-",
             )
         out.add_section()
     return out
