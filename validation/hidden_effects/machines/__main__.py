@@ -11,8 +11,18 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from validation.hidden_effects.machines import effects, limits, scoring, symptom
+from validation.hidden_effects.machines import (
+    effects,
+    limits,
+    scoring,
+    symptom,
+    symptom_experiments,
+    symptom_picture,
+)
 from validation.hidden_effects.machines.draw import LIMIT_SEED, PAIRS, RIGS, draw
+
+BEST = 6
+"""Experiments that are printed."""
 
 
 def _draw(options: argparse.Namespace) -> None:
@@ -47,11 +57,23 @@ def _symptom(options: argparse.Namespace) -> None:
     table = Table(title="87 mm made 81 mm: what it takes, and the lag at three inputs")
     for column in ("cause", "size", "travel [mm]", "lag [ms]"):
         table.add_column(column)
-    for row in symptom.table():
+    rows = symptom.table()
+    for row in rows:
         size = "-" if row.size is None else f"{row.size:.4g}"
         travels = ", ".join(f"{1e3 * x:.1f}" for x in row.travels) or "not within reason"
         table.add_row(row.cause, size, travels, ", ".join(f"{1e3 * x:.0f}" for x in row.lags))
-    Console().print(table)
+    console = Console(width=120)
+    console.print(table)
+    if options.picture is not None:
+        options.picture.write_text(symptom_picture.picture(rows))
+    menu = Table(title="which experiment tells the causes of the smaller travel apart")
+    for column in ("inputs", "what is read", "the two it tells worst", "apart by"):
+        menu.add_column(column)
+    for e in symptom_experiments.experiments()[:BEST]:
+        one, other, apart = e.worst
+        sines = "; ".join(f"{amplitude:g} V at {hertz:g} Hz" for amplitude, hertz in e.inputs)
+        menu.add_row(sines, ", ".join(e.signals), f"{one}, {other}", f"{apart:.1f}")
+    console.print(menu)
 
 
 def _score(options: argparse.Namespace) -> None:
@@ -91,6 +113,7 @@ def main(arguments: list[str] | None = None) -> int:
     showing.add_argument("--seed", type=int, default=1)
     showing.add_argument("--out", type=Path, help="folder for rig and records")
     showing.add_argument("--truth", type=Path, help="file for the sealed truth")
+    showing.add_argument("--picture", type=Path, help="also draw the table as SVG to this file")
     showing.set_defaults(run=_symptom)
     scored = commands.add_parser(
         "score", help="confusion matrix and goals of outcomes (JSON lines)"
