@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import runpy
+import shutil
+import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -177,6 +179,43 @@ def test_the_example_says_what_is_wrong_with_its_tanks(case: str, tmp_path: Path
     text = page.read_text()
     assert f'data-verdict="{answer.verdict}"' in text
     assert ('id="empirical"' in text) == (case == "overflow")
+
+
+# ---- in C++ ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.skipif(shutil.which("c++") is None, reason="no C++ compiler here")
+def test_a_derivative_in_cpp_gives_the_same_answer(tmp_path: Path) -> None:
+    library = tmp_path / "two_tanks.so"
+    source = EXAMPLE.with_suffix(".cpp")
+    subprocess.run(
+        ["c++", "-O2", "-std=c++17", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", source, "-o", library],
+        check=True,
+    )  # fmt: skip
+    names = [
+        "pump_gain",
+        "pump_dead_band",
+        "outlet_upper",
+        "outlet_lower",
+        "leak_upper",
+        "leak_lower",
+    ]
+    derivative = own.from_library(library, "derivative", names, rows=2)
+    rng = np.random.default_rng(8)
+    x, u = rng.uniform(0.0, 0.3, (2, 50)), rng.uniform(-1.0, 9.0, (1, 50))
+    values = tanks.MODEL.values()
+    values["leak_upper"] = rng.uniform(0.0, 1e-6, 50)
+    values["pump_dead_band"] = 1.5
+    assert np.allclose(derivative(values, x, u), tanks.MODEL.derivative(values, x, u), rtol=1e-12)
+
+    compiled = replace(tanks.MODEL, derivative=derivative)
+    records = tanks.measured("leak", 1)
+    answer = own.diagnose_model(compiled, records, window=60.0)
+    assert answer.sentence == own.diagnose_model(tanks.MODEL, records, window=60.0).sentence
+    with pytest.raises(InputError, match="there is no function 'output'"):
+        own.from_library(library, "output", names, rows=2)
+    with pytest.raises(InputError, match="no library that can be loaded"):
+        own.from_library(source, "derivative", names, rows=2)
 
 
 # ---- what is refused ---------------------------------------------------------------------------------
