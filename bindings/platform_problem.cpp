@@ -29,9 +29,10 @@ std::vector<Params> legs_of(const LegParams& params) {
 }
 
 void bind_leg_params(py::module_& m) {
-  py::class_<LegParams, Params>(m, "LegParams",
-                        "Parameters of a machine with three legs: \"name\" is that of all legs, \"name:2\" by how much "
-                        "that of leg 2 is larger, zero unless it is set.")
+  py::class_<LegParams, Params>(
+      m, "LegParams",
+      "Parameters of a machine with three legs: \"name\" is that of all legs, \"name:2\" by how much "
+      "that of leg 2 is larger, zero unless it is set.")
       .def(py::init<const Params&>(), py::arg("common") = Params())
       .def("__getitem__",
            [](const LegParams& p, const std::string& name) {
@@ -104,11 +105,12 @@ std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const PlatformProblem& probl
 
 void bind_platform_problem(py::module_& m) {
   bind_leg_params(m);
-  py::class_<est::PlatformRecord>(
-      m, "PlatformRecord", "One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.")
+  py::class_<est::PlatformRecord>(m, "PlatformRecord",
+                                  "One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.")
       .def(py::init(&make_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
-           py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(), py::arg("conditions") = std::map<std::string, double>());
+           py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(),
+           py::arg("conditions") = std::map<std::string, double>());
   py::class_<PlatformProblem>(m, "PlatformProblem", "Prediction errors over windows, in units of the noise.")
       .def(py::init(&make_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",

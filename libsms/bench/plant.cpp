@@ -15,7 +15,7 @@ using Simulation = sms::Simulation<Platform>;
 using Vec3 = sms::Vec3<double>;
 
 constexpr double kTolerance = 1e-4;  // sms.simulation.PLATFORM_TOLERANCE
-constexpr int kPeriods = 4000;  // more than one period of the roll: every kind of kink is in it
+constexpr int kPeriods = 4000;       // more than one period of the roll: every kind of kink is in it
 
 void require(sms_status status) {
   if (status != SMS_OK) {

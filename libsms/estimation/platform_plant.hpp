@@ -31,8 +31,8 @@ struct PlatformRecord {
   LegSignals extension;
   LegSignals pressure_lower;
   LegSignals pressure_upper;
-  Eigen::VectorXd supply_pressure;                 // of the first actuator's reservoir; empty: not measured
-  Eigen::VectorXd roll;                            // rad; roll and pitch empty: not measured
+  Eigen::VectorXd supply_pressure;  // of the first actuator's reservoir; empty: not measured
+  Eigen::VectorXd roll;             // rad; roll and pitch empty: not measured
   Eigen::VectorXd pitch;
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
 };
@@ -149,8 +149,8 @@ PathPoint<S> place_between(const std::vector<PathPoint<S>>& path, int sample, do
 
 template <typename S>
 void PlatformPlant::rates(const Machines<S>& machines, const PathPoint<S>& place, const Mat3<S>& leaning,
-                          const Pistons<S>& state, const Vec3<S>& command, const Vec3<S>& film,
-                          const Hidden<S>& hidden, double at, PistonTerms<S>& t, Pistons<S>& rate) const {
+                          const Pistons<S>& state, const Vec3<S>& command, const Vec3<S>& film, const Hidden<S>& hidden,
+                          double at, PistonTerms<S>& t, Pistons<S>& rate) const {
   Vec3<S> drive = place.load, aside, speed;
   Piston<S> piston[3];
   for (int i = 0; i < 3; ++i) {
@@ -181,8 +181,8 @@ void PlatformPlant::rates(const Machines<S>& machines, const PathPoint<S>& place
     t.friction = drive - place.mass * t.along;
   } else {
     for (int i = 0; i < 3; ++i) {
-      const ForceBalance<S> alone = force_balance<S>(machines.leg[i], laws_.friction, piston[i],
-                                                     state.leg[i].actuator.deflection, S(1), S(0));
+      const ForceBalance<S> alone =
+          force_balance<S>(machines.leg[i], laws_.friction, piston[i], state.leg[i].actuator.deflection, S(1), S(0));
       t.friction(i) = alone.friction;
       rate.leg[i].actuator.deflection = alone.deflection_rate;
     }
@@ -220,24 +220,22 @@ S* PlatformPlant::readings(const Machines<S>& machines, const PlatformRecord& re
     // The sensor sits on the cylinder, and sees more of the rod where the frame yields below it.
     const S seen = seen_extension<S>(p, leg.extension, leg.velocity, t.friction(i) - t.actuator[i].force);
     const S x = late_reading<S>(seen, leg.velocity, rest + p.sensor_lag_extension);
-    *out++ = error(sensor_reading(x, p.sensor_gain_extension, p.sensor_offset_extension), record.extension[static_cast<std::size_t>(i)], late,
-                   noise_.extension(i));
+    *out++ = error(sensor_reading(x, p.sensor_gain_extension, p.sensor_offset_extension),
+                   record.extension[static_cast<std::size_t>(i)], late, noise_.extension(i));
   }
   for (int i = 0; i < 3; ++i) {
     const Params<S>& p = machines.leg[i];
     const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-    const S lower =
-        late_reading<S>(state.leg[i].actuator.lower.pressure, rate.leg[i].actuator.lower.pressure,
-                        rest + p.sensor_lag_chamber_pressure_lower);
+    const S lower = late_reading<S>(state.leg[i].actuator.lower.pressure, rate.leg[i].actuator.lower.pressure,
+                                    rest + p.sensor_lag_chamber_pressure_lower);
     *out++ = error(sensor_reading(lower, p.sensor_gain_chamber_pressure_lower, p.sensor_offset_chamber_pressure_lower),
                    record.pressure_lower[static_cast<std::size_t>(i)], late, noise_.pressure_lower(i));
   }
   for (int i = 0; i < 3; ++i) {
     const Params<S>& p = machines.leg[i];
     const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-    const S upper =
-        late_reading<S>(state.leg[i].actuator.upper.pressure, rate.leg[i].actuator.upper.pressure,
-                        rest + p.sensor_lag_chamber_pressure_upper);
+    const S upper = late_reading<S>(state.leg[i].actuator.upper.pressure, rate.leg[i].actuator.upper.pressure,
+                                    rest + p.sensor_lag_chamber_pressure_upper);
     *out++ = error(sensor_reading(upper, p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper),
                    record.pressure_upper[static_cast<std::size_t>(i)], late, noise_.pressure_upper(i));
   }
@@ -257,8 +255,8 @@ S* PlatformPlant::readings(const Machines<S>& machines, const PlatformRecord& re
     const int late = detail::whole_samples(record.step, p.clock_skew_attitude, &rest);
     const S roll = late_reading<S>(q(0), q_rate(0), rest + p.sensor_lag_roll);
     const S pitch = late_reading<S>(q(1), q_rate(1), rest + p.sensor_lag_pitch);
-    *out++ = error(sensor_reading(roll, p.sensor_gain_roll, p.sensor_offset_roll), record.roll, late,
-                   noise_.attitude(0));
+    *out++ =
+        error(sensor_reading(roll, p.sensor_gain_roll, p.sensor_offset_roll), record.roll, late, noise_.attitude(0));
     *out++ = error(sensor_reading(pitch, p.sensor_gain_pitch, p.sensor_offset_pitch), record.pitch, late,
                    noise_.attitude(1));
   }
@@ -289,7 +287,8 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
       leg.actuator.supply_pressure = start[12 + i];
     }
     leg.actuator.deflection = start[15 + i];
-    leg.actuator.spool = detail::spool_at<S>(p, record.command[static_cast<std::size_t>(i)], window.first, steps, h, late[i]);
+    leg.actuator.spool =
+        detail::spool_at<S>(p, record.command[static_cast<std::size_t>(i)], window.first, steps, h, late[i]);
   }
 
   PistonTerms<S> t;
@@ -310,7 +309,8 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
   const auto rates_at = [&](int sample, double part, const Pistons<S>& y, const Vec3<S>& films, Pistons<S>& rate) {
     Vec3<S> command;
     for (int i = 0; i < 3; ++i) {
-      command(i) = detail::command_at<S>(record.command[static_cast<std::size_t>(i)], S(window.first + sample + part) - late[i]);
+      command(i) =
+          detail::command_at<S>(record.command[static_cast<std::size_t>(i)], S(window.first + sample + part) - late[i]);
     }
     rates<S>(machines, place_between<S>(path.points, sample, part), path.leaning, y, command, films, hidden,
              sample + part, t, rate);

@@ -150,7 +150,9 @@ def machine(settings: Sequence[str]) -> Params:
         if not equals:
             raise InputError(f"--set {setting}: write NAME=VALUE, for instance payload_mass=280")
         if name not in PARAMETERS:
-            raise InputError(f"--set {setting}: {did_you_mean(name, PARAMETERS, 'docs/parameters.md lists all')}")
+            raise InputError(
+                f"--set {setting}: {did_you_mean(name, PARAMETERS, 'docs/parameters.md lists all')}"
+            )
         try:
             params[name] = float(value)
         except StatusError:

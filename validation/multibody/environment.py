@@ -39,6 +39,4 @@ def _run(command: list[str], folder: Path) -> None:
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode:
         said = (result.stderr.strip() or result.stdout.strip() or "no reason given").splitlines()
-        raise PeersUnavailableError(
-            f"the peers cannot be installed into {folder}: {said[-1]}"
-        )
+        raise PeersUnavailableError(f"the peers cannot be installed into {folder}: {said[-1]}")

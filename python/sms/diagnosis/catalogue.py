@@ -109,7 +109,11 @@ def _said(place: str | None) -> str | None:
 def _of_leg(parameter: str) -> str:
     """The parameter of a leg's sensor: "sensor_gain_extension_2" -> "sensor_gain_extension:2"."""
     common = without_leg(parameter)
-    return parameter if parameter in PARAMETERS else common + parameter[len(common) :].replace("_", ":")
+    return (
+        parameter
+        if parameter in PARAMETERS
+        else common + parameter[len(common) :].replace("_", ":")
+    )
 
 
 def _in_one_leg(effects: Sequence[Effect], ids: Sequence[str]) -> Iterable[Effect]:
