@@ -66,7 +66,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write one row a measurement")
     parser.add_argument(
-        "--peers", action="store_true", help="install the simulators to compare with, 1 GB"
+        "--peers", action="store_true", help="install the simulators to compare with, 1.1 GB"
     )
     options = parser.parse_args()
     rows = measurements(options.peers)

@@ -53,7 +53,7 @@ def simulation_rows(microseconds: float, install: bool) -> Iterator[Row]:
 
     Args:
         microseconds: of the core's step, measured by libsms/bench.
-        install: install what is missing (0.9 GB).
+        install: install what is missing (1.1 GB).
     """
     task = Task(
         mechanism=mechanism_of(sms.Params()),

@@ -219,6 +219,19 @@ def test_platform_at_its_default_tolerance_under_its_controller(duration: float)
     assert np.all(largest[:6] < AGREEMENT)
 
 
+@pytest.mark.full
+@pytest.mark.parametrize("laws", [laws for laws, _ in LAWS])
+def test_platform_at_its_default_tolerance_over_ten_seconds(laws: dict[str, Any]) -> None:
+    """At 1 kHz, against the core itself at a far smaller tolerance."""
+    t = 1e-3 * np.arange(10_001)
+    frequency, size = np.array([0.5, 0.4, 0.3]), np.array([0.06, 0.05, -0.05])
+    setpoint = 0.2 + size * np.sin(2.0 * np.pi * frequency * t[:, None])
+    coarse = sms.simulate_platform(setpoint, **laws)
+    fine = sms.simulate_platform(setpoint, tolerance=TIGHT, **laws)
+    largest, _ = off(coarse, fine.rows[:, :36], platform.SCALE)
+    assert np.all(largest[:3] < AGREEMENT)
+
+
 # The tank
 
 
