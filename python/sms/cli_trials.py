@@ -28,7 +28,7 @@ def register(app: typer.Typer) -> None:
 
 
 def trials(
-    rig: Annotated[str, typer.Option(help="What is measured: bench.")] = "bench",
+    rig: Annotated[str, typer.Option(help="What is measured: bench, platform or tank.")] = "bench",
     count: Annotated[int, typer.Option(min=1, help="How many trials.")] = 40,
     seed: Annotated[
         int | None, typer.Option(help="Seed of the first; fresh and printed if left out.")

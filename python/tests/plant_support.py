@@ -1,4 +1,4 @@
-"""Records of a bench actuator made with the core itself: for tests of the method, not of its truth.
+"""Records of a bench actuator and of a platform made with the core itself: for tests of the method, not of its truth.
 
 (Trials with an independent simulator are under validation/hidden_effects.)
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from sms import Params, simulate_bench
+from sms import Params, _core, extensions_of, simulate_bench, simulate_platform
 from sms.io import write_record
 
 Array = NDArray[np.float64]
@@ -63,6 +63,61 @@ def write_bench(folder: Path, seed: int, truth: Mapping[str, float]) -> Path:
         for name, size in NOISE.items():
             clean = run[name][::EVERY]
             signals[name] = clean + random.normal(0.0, size, clean.size)
+        write_record(folder / f"run{number}.csv", signals)
+        text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
+    (folder / "rig.toml").write_text(text)
+    return folder / "rig.toml"
+
+
+# ---- platform ------------------------------------------------------------------------------------
+
+PLATFORM_NOISE = {
+    "extension": 7e-5,
+    "chamber_pressure_lower": 300.0,
+    "chamber_pressure_upper": 300.0,
+}
+PLATFORM_RIG = """
+[rig]
+kind = "platform"
+title = "A platform"
+
+[signals]
+time = "time"
+"""
+
+
+def pose(kind: int, time: Array) -> Array:
+    """Roll, pitch, rad, and height, m, (n, 3): a motion for each role."""
+    waves = (
+        (0.03 * np.sin(2.9 * time), 0.02 * np.sin(5.3 * time), 0.03 * np.sin(4.1 * time)),
+        (0.02 * np.sin(6.1 * time), 0.03 * np.sin(3.7 * time), 0.03 * np.sin(2.3 * time)),
+    )
+    return np.column_stack(waves[kind]) + np.array([0.0, 0.0, 0.5])
+
+
+def write_platform(folder: Path, seed: int, truth: Mapping[str, float], length: float) -> Path:
+    """A record to identify with and one to validate with; truth: "name" of all legs, "name:2" of leg 2."""
+    random = np.random.default_rng(seed)
+    machine = _core.LegParams(Params(proportional_gain=8.0))
+    for name, value in truth.items():
+        machine[name] = value
+    text = PLATFORM_RIG
+    for signal in ("valve_command", *PLATFORM_NOISE):
+        noise = PLATFORM_NOISE.get(signal)
+        source = "{}" if noise is None else f"{{ noise = {noise} }}"
+        text += "".join(f"{signal}_{leg} = {source}\n" for leg in (1, 2, 3))
+    for number, role in enumerate(("identify", "validate")):
+        time = 1e-3 * np.arange(0.0, length / 1e-3)
+        wanted = pose(number, time)
+        run = simulate_platform(
+            extensions_of(*wanted.T), controller="pid", pose=wanted[0], params=machine.legs
+        )
+        signals = {"time": time[::EVERY]}
+        for leg in (1, 2, 3):
+            signals[f"valve_command_{leg}"] = run[f"valve_command_{leg}"][::EVERY]
+            for name, size in PLATFORM_NOISE.items():
+                clean = run[f"{name}_{leg}"][::EVERY]
+                signals[f"{name}_{leg}"] = clean + random.normal(0.0, size, clean.size)
         write_record(folder / f"run{number}.csv", signals)
         text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
     (folder / "rig.toml").write_text(text)

@@ -54,7 +54,7 @@ def test_the_catalogue_has_every_effect_with_all_its_words() -> None:
 
 
 def test_missing_terms_are_neutral_by_default() -> None:
-    params = _core.Params()
+    params = _core.LegParams()
     for kind in ("tank", "bench", "platform"):
         for effect in catalogue(kind):
             if effect.kind == "missing":

@@ -173,7 +173,7 @@ def alike_signals(signals: Mapping[str, Array]) -> dict[str, list[Array]]:
     return found
 
 
-MOST_ROWS = 40_000
+MOST_ROWS = 16_000
 """Of a footprint: with more, neighbouring samples are added up."""
 
 

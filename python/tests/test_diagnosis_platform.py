@@ -1,0 +1,90 @@
+"""The diagnosis of a platform: parameters of one leg, hidden inputs of legs, one hidden leak, a healthy machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plant_support import write_platform
+from sms import _core
+from sms.diagnosis import diagnose
+from sms.diagnosis.catalogue import catalogue
+from sms.diagnosis.localise import alike, alike_signals, belong_together
+from sms.parameters import LEG_PARAMETERS, PARAMETERS
+
+pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
+
+
+# ---- legs ------------------------------------------------------------------------------------------
+
+
+def test_parameters_of_one_leg_are_what_it_has_more() -> None:
+    params = _core.LegParams(_core.Params(valve_centre=5.1))
+    assert params["valve_centre"] == 5.1 and params["valve_centre:2"] == 0.0
+    params["valve_centre:2"] = -0.2
+    assert [leg["valve_centre"] for leg in params.legs] == pytest.approx([5.1, 4.9, 5.1])
+    twin = params.copy()
+    twin["valve_centre:2"] = 0.0
+    assert params["valve_centre:2"] == -0.2
+    with pytest.raises(KeyError, match="valve_center"):
+        params["valve_center:1"]
+    with pytest.raises(KeyError, match=":1, :2 and :3"):
+        params["valve_centre:4"]
+
+
+def test_bounds_of_one_leg_keep_its_value_within_those_of_all() -> None:
+    for name, row in PARAMETERS.items():
+        leg = LEG_PARAMETERS[f"{name}:3"]
+        assert leg.lower + row.default == pytest.approx(row.lower)
+        assert leg.upper + row.default == pytest.approx(row.upper)
+        assert leg.default == 0.0
+
+
+def test_effects_of_all_legs_of_one_and_of_its_sensors() -> None:
+    found = {e.key: e for e in catalogue("platform")}
+    assert found["fitting_leakage of lower"].parameters == ("chamber_leakage_lower",)
+    leg = found["fitting_leakage of lower, leg 2"]
+    assert leg.parameters == ("chamber_leakage_lower:2",) and "leg 2" in leg.title
+    sensor = found["sensor_offset of extension_3"]
+    assert sensor.parameters == ("sensor_offset_extension:3",)
+    assert "position of leg 3" in sensor.title
+    assert found["moving_mass"].parameters == ("payload_mass",)
+    assert "centre_of_gravity of x, leg 1" not in found
+    # A shift of one leg is relative to what all have: as far as the value itself may move.
+    low, high = found["coulomb_friction of leg 1"].plausible_range(38.0)
+    assert (low, high) == (-38.0, 5.0 * 38.0)
+
+
+def test_a_term_of_one_leg_follows_that_leg_and_what_has_none() -> None:
+    assert belong_together("force of leg 2", "velocity_2 [m/s]")
+    assert belong_together("force of leg 2", "time [s]")
+    assert not belong_together("force of leg 2", "velocity_1 [m/s]")
+    assert not belong_together("chamber_pressure_lower_3", "extension_1 [m]")
+    assert alike(("force of leg 1", "force of leg 2", "flow")) == {"force": [0, 1]}
+    one, other = np.zeros(2), np.ones(2)
+    found = alike_signals({"velocity_1 [m/s]": one, "velocity_2 [m/s]": other, "time [s]": one})
+    assert [v is one for v in found["velocity [m/s]"]] == [True, False]
+    assert len(found["time [s]"]) == 3
+
+
+# ---- the whole method ------------------------------------------------------------------------------
+
+
+def test_a_healthy_platform_gives_no_evidence(tmp_path: Path) -> None:
+    answer = diagnose(write_platform(tmp_path, 1, {}, 2.2))
+    assert (answer.verdict, answer.causes) == ("no-evidence", ())
+    assert all(g.baseline_rms < 1.3 * g.noise_floor for g in answer.gain)
+
+
+def test_a_leak_of_one_leg_is_named_with_its_size(tmp_path: Path) -> None:
+    leak = 3e-9  # kg/(s Pa)
+    answer = diagnose(write_platform(tmp_path, 2, {"chamber_leakage_lower:2": leak}, 2.2))
+    assert answer.verdict == "cause"
+    (cause,) = answer.causes
+    assert (cause.effect, cause.signal) == ("fitting_leakage", "lower, leg 2")
+    (found,) = cause.parameters
+    assert found.value == pytest.approx(leak, abs=max(3.0 * found.standard_error, 0.05 * leak))
+    assert answer.hidden is not None
+    assert answer.hidden.equation == "flow of the lower chamber of leg 2"
+    assert "leg 2" in answer.sentence
