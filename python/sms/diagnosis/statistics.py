@@ -69,7 +69,7 @@ def score_test(
 def covariance_of(jacobian: Array, residual: Array, block: Index) -> Array:
     """Covariance (k, k) of least-squares parameters, robust to any correlation within blocks."""
     groups = int(block.max()) + 1
-    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
+    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-150)  # its square is a number still
     j = jacobian / scale
     bread = np.linalg.pinv(j.T @ j, rcond=1e-12)
     scores = sum_by(block, j * residual[:, None], groups)
