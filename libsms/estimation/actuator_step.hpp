@@ -68,6 +68,31 @@ S seal_deviation(const Params<S>& p, const Piston<S>& piston, const S& by_law, c
   return force;
 }
 
+// ---- heat ----
+
+// heat_share lies between the polytropic law at constant temperature (0) and the energy equation with heat through the
+// wall (1). In between, flows see air that is warmer than the supplied by the share of what the energy equation says.
+template <typename S>
+bool is_partly_warm(const Params<S>& p, const ActuatorLaws& laws) {
+  return laws.chamber == ChamberLaw::polytropic && !is_absent(p.heat_share);
+}
+
+template <typename S>
+ActuatorState<S> partly_warm(const Params<S>& p, ActuatorState<S> state) {
+  state.lower.temperature = p.air_temperature + p.heat_share * (state.lower.temperature - p.air_temperature);
+  state.upper.temperature = p.air_temperature + p.heat_share * (state.upper.temperature - p.air_temperature);
+  return state;
+}
+
+// The rates of one chamber, from those of the polytropic law.
+template <typename S>
+void add_heat(const Params<S>& p, const Gas<S>& gas, const ChamberSpace<S>& space, const ChamberFlow<S>& flow,
+              Gas<S>& rate) {
+  const GasRate<S> warm = energy_rates(p, gas, space, flow);
+  rate.pressure += p.heat_share * (warm.pressure - rate.pressure);
+  rate.temperature = warm.temperature;
+}
+
 // ---- the stiff step ----
 
 // A of the step.

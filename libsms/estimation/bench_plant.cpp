@@ -36,7 +36,7 @@ Eigen::VectorXd BenchPlant::guess(int record, int first) const {
   Eigen::VectorXd start(kStart);
   start << motion[0], motion[1], detail::beginning(r.pressure_lower, first, samples, r.step)[0],
       detail::beginning(r.pressure_upper, first, samples, r.step)[0],
-      r.supply_pressure.size() > 0 ? r.supply_pressure[first] : 0.0, 0.0;
+      r.supply_pressure.size() > 0 ? r.supply_pressure[first] : 0.0, 0.0, 0.0, 0.0;
   if (r.supply_pressure.size() == 0) {
     start[4] = 4e5;
   }

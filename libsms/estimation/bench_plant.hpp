@@ -1,7 +1,7 @@
 // The rig "bench" as a plant of shooting.hpp: one actuator, its command, extension and chamber pressures measured.
 //
-// A window starts with what is free: extension, velocity, both pressures, the reservoir's pressure and the deflection of
-// the seals. The spool needs none of it: it follows the command alone, and is run up over the 50 ms before the window.
+// A window starts with what is free: extension, velocity, both pressures, the reservoir's pressure, the deflection of the
+// seals, and by how much the air in both chambers is warmer than the supplied. The spool needs none of it: it follows the command alone, and is run up over the 50 ms before the window.
 #pragma once
 
 #include "estimation/actuator_step.hpp"
@@ -33,14 +33,14 @@ class BenchPlant {
  public:
   template <typename S>
   using Machine = Params<S>;
-  static constexpr int kStart = 6;   // x, v, p_a, p_b, p_R, z
+  static constexpr int kStart = 8;   // x, v, p_a, p_b, p_R, z, T_a - T, T_b - T
   static constexpr int kHidden = 3;  // force, N; mass flow into the lower and into the upper chamber, kg/s
 
   // std::invalid_argument for arrays of different lengths or numbers that are not finite.
   BenchPlant(std::vector<BenchRecord> records, const BenchNoise& noise, const ActuatorLaws& laws, double longest_step);
 
   static double start_scale(int k) {
-    constexpr double scale[kStart] = {5e-3, 0.3, 2e4, 2e4, 2e4, 1e-3};
+    constexpr double scale[kStart] = {5e-3, 0.3, 2e4, 2e4, 2e4, 1e-3, 20.0, 20.0};
     return scale[k];
   }
   int records() const { return static_cast<int>(records_.size()); }
@@ -114,8 +114,10 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
 
   BenchState<S> state = bench_at_rest(bench, start[0], S(0), S(2e5));
   state.velocity = start[1];
-  state.actuator.lower = {start[2], p.air_temperature};
-  state.actuator.upper = {start[3], p.air_temperature};
+  const bool partly_warm = detail::is_partly_warm(p, laws_);
+  const bool warm = partly_warm || laws_.chamber == ChamberLaw::energy;
+  state.actuator.lower = {start[2], warm ? S(p.air_temperature + start[6]) : p.air_temperature};
+  state.actuator.upper = {start[3], warm ? S(p.air_temperature + start[7]) : p.air_temperature};
   state.actuator.supply_pressure = droops ? start[4] : p.supply_pressure;
   state.actuator.deflection = start[5];
 
@@ -135,7 +137,15 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   };
   const auto rates = [&](double at, const BenchState<S>& y, const S& film, BenchState<S>& rate) {
     const BenchInput<S> input{detail::command_at<S>(record.command, S(window.first + at) - late), S(0)};
-    derivative(bench, y, input, t, rate);
+    if (partly_warm) {
+      BenchState<S> seen = y;
+      seen.actuator = detail::partly_warm(p, y.actuator);
+      derivative(bench, seen, input, t, rate);
+      detail::add_heat(p, y.actuator.lower, t.actuator.lower, t.actuator.flow.lower, rate.actuator.lower);
+      detail::add_heat(p, y.actuator.upper, t.actuator.upper, t.actuator.flow.upper, rate.actuator.upper);
+    } else {
+      derivative(bench, y, input, t, rate);
+    }
     rate.velocity -= detail::seal_deviation(p, t.actuator.piston, t.balance.friction, y.actuator.deflection, film,
                                             &rate.actuator.deflection) /
                      p.moving_mass;

@@ -91,7 +91,7 @@ TEST_CASE("derivatives of a simulation are those of differences, by parameter an
       {sms::index_of_mass_flow_gain, 1e-6},       {sms::index_of_moving_mass, 1e-6},
       {sms::index_of_piston_leakage, 1e-14},      {sms::index_of_sensor_gain_extension, 1e-7},
       {sms::index_of_clock_skew_extension, 1e-7}, {sms::index_of_compression_heat_ratio, 1e-7},
-      {sms::index_of_friction_lag, 1e-7}};
+      {sms::index_of_friction_lag, 1e-7},         {sms::index_of_heat_share, 1e-6}};
   for (const auto& one : free) {
     CAPTURE(std::string(sms_param_describe(one.first)->name));
     sms::Params<Jet> seeded = sms::cast<Jet>(p);
@@ -142,10 +142,11 @@ TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others d
   const sms::Params<double> p;
   const Eigen::MatrixXd plain = simulated(p, 200, 1e-3);
   using Effect = std::pair<int, double>;
-  for (const Effect& effect : {Effect{sms::index_of_presliding_share, 0.5}, Effect{sms::index_of_friction_lag, 0.01},
-                               Effect{sms::index_of_command_delay, 0.01}, Effect{sms::index_of_backlash, 1e-3},
-                               Effect{sms::index_of_frame_compliance, 1e-6}, Effect{sms::index_of_stiction_shape, 1.0},
-                               Effect{sms::index_of_sensor_lag_extension, 0.01}}) {
+  for (const Effect& effect :
+       {Effect{sms::index_of_presliding_share, 0.5}, Effect{sms::index_of_friction_lag, 0.01},
+        Effect{sms::index_of_command_delay, 0.01}, Effect{sms::index_of_backlash, 1e-3},
+        Effect{sms::index_of_frame_compliance, 1e-6}, Effect{sms::index_of_stiction_shape, 1.0},
+        Effect{sms::index_of_sensor_lag_extension, 0.01}, Effect{sms::index_of_heat_share, 0.5}}) {
     CAPTURE(sms_param_describe(effect.first)->name);
     sms::Params<double> changed = p;
     sms::param(changed, effect.first) = 0.0;
@@ -154,6 +155,24 @@ TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others d
     sms::param(changed, effect.first) = effect.second;
     CHECK((simulated(changed, 200, 1e-3) - plain).cwiseAbs().maxCoeff() > 1e-7);
   }
+}
+
+TEST_CASE("with all of the heat a simulation is that of the energy equation") {
+  sms::Params<double> p;
+  p.heat_share = 1.0;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(200);
+  const est::BenchRecord record{kStep, command(200), zero, zero, zero, {}, {}};
+  const est::Window window{0, 0, 200, 0, 600, {}};
+  const double start[est::BenchPlant::kStart] = {0.2, 0.0, 2.6e5, 2.9e5, 4e5, 0.0, 5.0, -5.0};
+  const auto with = [&](sms::ChamberLaw law) {
+    sms::ActuatorLaws laws = sms::published_laws();
+    laws.chamber = law;
+    Eigen::VectorXd out(600);
+    est::BenchPlant({record}, unit_noise, laws, 1e-3).simulate(p, window, start, out.data());
+    return out;
+  };
+  const Eigen::VectorXd all = with(sms::ChamberLaw::polytropic), energy = with(sms::ChamberLaw::energy);
+  CHECK((all - energy).norm() < 1e-9 * energy.norm());
 }
 
 TEST_CASE("the lubricant's film follows the speed by a lag of first order, and is the speed where there is none") {
