@@ -265,7 +265,7 @@ def _blocks(runs: Runs, known: int) -> Index:
 
 def _solve(columns: Array, full: Array) -> tuple[Array, Array]:
     """Ridge estimate and its footprint's scale."""
-    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-100)
     a = columns / scale
     x = np.linalg.solve(a.T @ a + RIDGE * np.eye(a.shape[1]), -a.T @ full)
     return np.asarray(x / scale), scale
