@@ -84,7 +84,7 @@ def _score(options: argparse.Namespace) -> None:
     for kind in sorted({outcome.kind for outcome in outcomes}):
         own = [outcome for outcome in outcomes if outcome.kind == kind]
         console.print(f"[bold]{kind}[/bold], {len(own)} trials")
-        console.print(scoring.confusion_matrix(own))
+        console.print(scoring.confusion_table(own))
         console.print(scoring.goal_table(own))
 
 

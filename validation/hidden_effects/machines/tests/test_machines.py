@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 import tomllib
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ from validation.hidden_effects.machines.draw import (
     pair_key,
 )
 from validation.hidden_effects.machines.instruments import Channel, SensorError, disturbed, noise
-from validation.hidden_effects.machines.scoring import Named, Outcome
+from validation.hidden_effects.machines.scoring import Outcome
 from validation.hidden_effects.machines.truth import Truth
 
 QUICK = ["bench", "tank"]
@@ -309,8 +310,11 @@ def test_tables_of_limits_know_every_effect(kind: str) -> None:
 
 
 def outcome(hidden: tuple[str, ...], verdict: str, *named: tuple[str, ...]) -> Outcome:
-    values = (1.0,) * len(hidden)
-    return Outcome("bench", 1, hidden, values, verdict, tuple(Named(keys) for keys in named))
+    outside = {effect.key for effect in effects.OUT_OF_CATALOGUE}
+    sort = "catalogue" if hidden else "healthy"
+    sort = "outside" if set(hidden) & outside else "pair" if len(hidden) > 1 else sort
+    values = [1.0] * len(hidden)
+    return Outcome("bench", 1, sort, 3.0, list(hidden), values, verdict, [list(n) for n in named])
 
 
 @pytest.mark.parametrize(
@@ -344,10 +348,8 @@ def test_scores(
 def test_an_interrupted_series_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "outcomes.jsonl"
     done = [outcome(("tube",), "cause", ("tube",)), outcome((), "no-evidence")]
-    for one in done:
-        scoring.append(path, one)
-    with path.open("a") as file:
-        file.write(json.dumps({"kind": "bench"})[:-3])
+    lines = [json.dumps(asdict(one)) for one in done]
+    path.write_text("\n".join([*lines, lines[0][:-3]]))
     assert scoring.load(path) == done
     (right, *_rest) = scoring.goals(done)
     assert right.share == 1.0
