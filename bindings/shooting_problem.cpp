@@ -60,24 +60,6 @@ std::unique_ptr<TankPlantProblem> make_tank_problem(std::vector<est::TankPlantRe
       est::WindowOptions{window, kRunUp, threads});
 }
 
-// Readings of the model from a tank at rest, under the record's command: (samples, channels of the record).
-est::RowMatrix simulate_tank(est::TankPlantRecord record, const Params& params, double pressure,
-                             const std::string& valve, const std::string& chambers, double longest_step) {
-  const int samples = static_cast<int>(record.command.size());
-  for (Eigen::VectorXd* measured : {&record.pressure, &record.temperature, &record.supply_pressure}) {
-    measured->setZero();
-  }
-  const est::TankPlant plant({std::move(record)}, {1.0, 1.0, 1.0}, laws_of("acceleration_dependent", valve, chambers),
-                             longest_step);
-  const int channels = plant.channels(0);
-  const est::Window window{0, 0, samples, 0, samples * channels, {}};
-  const double start[est::TankPlant::kStart] = {pressure, params.air_temperature, params.supply_pressure,
-                                                params.air_temperature};
-  est::RowMatrix readings(samples, channels);
-  plant.simulate(params, window, start, readings.data());
-  return readings;
-}
-
 void bind_bench(py::module_& m) {
   py::class_<est::BenchRecord>(m, "BenchRecord", "One evenly sampled record of the rig 'bench'; arrays (n,), SI.")
       .def(py::init(&make_bench_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
@@ -105,11 +87,6 @@ void bind_tank(py::module_& m) {
            py::arg("longest_step") = 1e-3, py::arg("threads") = 1,
            "noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden "
            "inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.");
-  m.def(
-      "simulate_tank", &simulate_tank, py::kw_only(), py::arg("record"), py::arg("params"), py::arg("pressure"),
-      py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic", py::arg("longest_step") = 1e-3,
-      "(n, channels): what the sensors that `record` has would read under its command, of a tank at rest at first, at "
-      "`pressure`, Pa absolute.");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from sms import _core
+from sms import _core, simulation
 from sms.diagnosis.kind import Experiment, Kind, Run
 from sms.diagnosis.result import Array
 from sms.io.rig import Rig
@@ -63,6 +63,8 @@ LENGTH = 8.0
 """s"""
 STEP = 0.005
 """s, of the proposed record."""
+TOLERANCE = 1e-5
+"""Of the integrator: a plan needs no more."""
 
 Waveform = Callable[[Array], Array]
 """Of time (n,): command less the valve's centre, V."""
@@ -108,33 +110,29 @@ def simulated(
     opening: Waveform,
     supply_change: float = 0.0,
 ) -> Run | None:
-    """The record of a run from ambient pressure; a tank stays between ambient and supply whatever the command."""
-    time = np.arange(0.0, LENGTH, STEP)
-    command = params["valve_centre"] + opening(time)
-    blank = {
-        "tank_pressure": np.zeros(len(time)),
-        "tank_temperature": np.zeros(len(time)),
-        "supply_pressure": np.zeros(len(time)),
-    }
-    changes = {"supply_pressure": supply_change} if supply_change != 0.0 else {}
-    run = Run(
-        "proposed", "identify", time, {"valve_command": command} | blank, frozenset(), changes
-    )
-    predicted = _core.simulate_tank(
-        record=_record(run, channels),
-        params=params,
-        pressure=params["ambient_pressure"] + 5e4,
-        valve=rig.model.valve,
-        chambers=rig.model.chambers,
-        longest_step=LONGEST_STEP,
-    )
-    names = [s for s in OUTPUTS if s in channels]
-    if not np.all(np.isfinite(predicted)):
+    """The record of a run from little above ambient; a tank stays below its supply whatever the command."""
+    period = 1e-3
+    machine = params.copy()
+    machine["supply_pressure"] = machine["supply_pressure"] + supply_change
+    machine["tank_initial_pressure"] = machine["ambient_pressure"] + 5e4
+    machine["control_period"] = period
+    time = np.arange(0.0, LENGTH, period)
+    command = machine["valve_centre"] + opening(time)
+    try:
+        run = simulation.simulate_tank(
+            command,
+            params=machine,
+            valve_law=rig.model.valve,
+            chamber_law=rig.model.chambers,
+            tolerance=TOLERANCE,
+        )
+    except _core.StatusError:
         return None
-    signals = {"valve_command": command} | {
-        name: np.ascontiguousarray(predicted[:, i]) for i, name in enumerate(names)
-    }
-    return Run("proposed", "identify", time, signals, frozenset(), changes)
+    pick = slice(None, None, round(STEP / period))
+    names = ("valve_command", *(s for s in OUTPUTS if s in channels))
+    signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
+    changes = {"supply_pressure": supply_change} if supply_change != 0.0 else {}
+    return Run("proposed", "identify", time[pick], signals, frozenset(), changes)
 
 
 MENU = (

@@ -1,4 +1,4 @@
-"""Blind trials on the virtual bench: a small draw here, a larger one with fresh seeds in ./dev test --full."""
+"""Blind trials on the virtual bench and tank: a small draw here, a larger one with fresh seeds in ./dev test --full."""
 
 from __future__ import annotations
 
@@ -64,6 +64,32 @@ def test_one_drawn_bench_of_each_sort(sort: str) -> None:
     seed = {"healthy": 5001, "catalogue": 5002}[sort]
     found = run_task(Task("bench", seed, sort, 3.0))
     assert found.right, found
+
+
+@pytest.mark.parametrize(
+    ("sort", "seed", "hidden"),
+    [
+        ("healthy", 101, []),
+        ("catalogue", 108, ["fitting_leakage:lower"]),
+        ("outside", 123, ["check_valve_leak"]),
+    ],
+)
+def test_one_drawn_tank_of_each_sort(sort: str, seed: int, hidden: list[str]) -> None:
+    found = run_task(Task("tank", seed, sort, 3.0))
+    assert found.hidden == hidden
+    assert found.right, found
+    assert found.right_block, found
+
+
+@pytest.mark.full
+def test_fresh_tanks() -> None:
+    first = secrets.randbelow(10**6)
+    outcomes = [run_task(task) for task in tasks("tank", first, 2 * FRESH, 3.0)]
+    for g in goals(outcomes):
+        print(f"seed {first}: {g.what}: {g.count} of {g.of}")
+    ill = [o for o in outcomes if o.sort == "catalogue"]
+    assert sum(o.right for o in ill) >= 0.8 * len(ill)
+    assert all(o.right for o in outcomes if o.sort == "healthy")
 
 
 @pytest.mark.full

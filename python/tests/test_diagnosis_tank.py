@@ -1,0 +1,78 @@
+"""The diagnosis of a tank: one class named on records of the core's own tank, and the menu of next experiments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sms import Params, _core, simulate_tank
+from sms.diagnosis import diagnose
+from sms.diagnosis.kinds import KINDS
+from sms.io import write_record
+from sms.io.rig import load_rig
+
+pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
+
+EVERY = 5
+"""Control periods of 1 ms in a sample."""
+RIG = """
+[rig]
+kind = "tank"
+title = "A tank"
+
+[signals]
+time = "time"
+valve_command = "valve_command"
+tank_pressure = { noise = "300 Pa" }
+
+[parameters]
+tank_volume = { value = "5 l", uncertainty = "0.02 l" }
+valve_centre = { value = "5 V", uncertainty = "0.02 V" }
+"""
+
+
+def write_tank(folder: Path, seed: int, truth: dict[str, float]) -> Path:
+    """Two records to identify with and two to validate with, of a tank with these parameters."""
+    random = np.random.default_rng(seed)
+    text = RIG
+    time = 1e-3 * np.arange(4000)
+    for number, role in enumerate(("identify", "identify", "validate", "validate")):
+        opening = 1.7 * np.sin((2.0 + number) * time) + 0.8 * np.sin(7.0 * time + number)
+        run = simulate_tank(5.0 + opening, params=Params(**truth))
+        clean = run["tank_pressure"][::EVERY]
+        signals = {"time": time[::EVERY], "valve_command": 5.0 + opening[::EVERY]}
+        signals["tank_pressure"] = clean + random.normal(0.0, 300.0, clean.size)
+        write_record(folder / f"run{number}.csv", signals)
+        text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
+    (folder / "rig.toml").write_text(text)
+    return folder / "rig.toml"
+
+
+def test_a_larger_tank_and_a_smaller_flow_are_one_class(tmp_path: Path) -> None:
+    answer = diagnose(
+        write_tank(tmp_path, 1, {"tank_volume": 5.4e-3, "tank_initial_pressure": 2e5})
+    )
+    assert answer.verdict == "class"
+    assert [set(c.members) for c in answer.causes] == [{"dead_volume", "flow_conductance"}]
+    found = {answer.causes[0].effect: answer.causes[0].parameters[0].value} | {
+        m.effect: m.parameters[0].value for m in answer.causes[0].alternatives
+    }
+    assert found["dead_volume"] == pytest.approx(5.4e-3, rel=0.01)
+    assert found["flow_conductance"] == pytest.approx(5.0 / 5.4 - 1.0, abs=0.01)
+    assert answer.hidden is not None
+    assert answer.hidden.equation == "flow of the tank"
+    assert answer.next_experiment is not None
+    assert "eigh the tank full of water" in answer.next_experiment.purpose
+
+
+def test_every_run_of_the_menu_can_be_made(tmp_path: Path) -> None:
+    rig = load_rig(write_tank(tmp_path, 2, {}))
+    for experiment in KINDS["tank"].menu:
+        run = experiment.simulated(rig, Params(), ("tank_pressure", "supply_pressure"))
+        assert run is not None, experiment.title
+        pressure = run.signals["tank_pressure"]
+        assert pressure.shape == run.time.shape == run.signals["valve_command"].shape
+        assert np.ptp(pressure) > 2e4, experiment.title
+        assert pressure.min() > 8e4
+        assert pressure.max() < 4.9e5
