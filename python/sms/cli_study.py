@@ -150,7 +150,9 @@ def design(
 
 def print_table(headers: tuple[str, ...], rows: list[list[str]]) -> None:
     """A table as wide as the console."""
-    shown = Table(*headers, box=None, pad_edge=False)
+    shown = Table(box=None, pad_edge=False)
+    for header in headers:
+        shown.add_column(header, overflow="fold")  # a narrow terminal breaks a word, and loses none
     for row in rows:
         shown.add_row(*row)
     Console().print(shown)

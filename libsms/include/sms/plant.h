@@ -200,8 +200,8 @@ void sms_platform_prepare(const sms_platform *platform, sms_platform_terms *term
 void sms_platform_preparef(const sms_platformf *platform, sms_platform_termsf *terms);
 
 /* ---- motion (bench.hpp, platform.hpp, integrate.hpp, integrate_adaptive.hpp) ------------------------------------- */
-/* The statuses from here on: SMS_NOT_A_NUMBER for a state or an input that is none, or a rate that comes out as none;
- * SMS_OUT_OF_WORKSPACE, SMS_NOT_CONVERGED as in inverse kinematics. State and terms are untouched then. */
+/* The statuses from here on: SMS_NOT_A_NUMBER for a state, an input or a rate that is none; SMS_OUT_OF_RANGE where a
+ * chamber has no volume; SMS_OUT_OF_WORKSPACE, SMS_NOT_CONVERGED as in inverse kinematics. Nothing is written then. */
 
 /* The state's derivative, a struct of the same fields per second. */
 sms_status sms_bench_derivative(const sms_bench *bench, const sms_bench_state *state, const sms_bench_input *input,
@@ -246,7 +246,7 @@ void sms_stepping_begin(double tolerance, sms_stepping *stepping);
 void sms_stepping_beginf(float tolerance, sms_steppingf *stepping);
 
 /* Over `duration`, s, in as many steps as the tolerance asks for; they stop at valve edges, reversals and ends of the
- * stroke. SMS_OUT_OF_RANGE: duration or tolerance is not positive; SMS_NOT_CONVERGED: a step would have to be smaller
+ * stroke. SMS_OUT_OF_RANGE also: duration or tolerance is not positive; SMS_NOT_CONVERGED: a step would be smaller
  * than 0.1 ns. The stepping too is untouched then. The terms are those of the end. */
 sms_status sms_bench_advance(const sms_bench *bench, const sms_bench_input *input, double duration,
                              sms_stepping *stepping, sms_bench_state *state);
