@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -23,6 +25,7 @@ from validation.actuator_runs.draw import draw
 
 SEED = 2
 Drawn = tuple[Path, dict[str, float]]
+Change = Callable[[Any], Any]
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +41,7 @@ def identified(drawn: Drawn) -> BenchResult:
     return identify_actuator(drawn[0])
 
 
-def changed(rig: Path, to: Path, record: str, **columns: object) -> Path:
+def changed(rig: Path, to: Path, record: str, **columns: Change) -> Path:
     """The rig with one record's columns replaced."""
     to.mkdir()
     for file in rig.parent.glob("*.csv"):
@@ -46,7 +49,7 @@ def changed(rig: Path, to: Path, record: str, **columns: object) -> Path:
         if file.stem == record:
             for name, make in columns.items():
                 column = next(c for c in table.columns if c.startswith(name))
-                table[column] = make(table[column]) if callable(make) else make
+                table[column] = make(table[column])
         table.to_csv(to / file.name, index=False)
     (to / "rig.toml").write_text(rig.read_text())
     return to / "rig.toml"

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 from sms.identification.colour import Colour, colour_of, coloured_meat
 from sms.identification.estimate import Free, estimate
 from sms.identification.flow import FlowFit, fit_record
@@ -173,6 +174,16 @@ def test_the_memory_of_a_residual_is_found_and_widens_the_errors(rng: np.random.
     assert coloured_meat(ones, found)[0, 0] / n == pytest.approx(9.0, rel=0.3)
     plain = Colour(1.0, np.empty(0))
     assert coloured_meat(ones, plain)[0, 0] == pytest.approx(n)
+
+
+def test_a_small_slow_part_of_the_noise_is_not_overlooked(rng: np.random.Generator) -> None:
+    n, share, keep = 4000, 0.08, np.exp(-0.1)
+    found = []
+    for _ in range(20):
+        slow = lfilter([np.sqrt(1.0 - keep**2)], [1.0, -keep], rng.standard_normal(n))
+        noise = np.sqrt(share) * slow + np.sqrt(1.0 - share) * rng.standard_normal(n)
+        found.append(colour_of(noise, 0).samples_as_one)
+    assert np.mean(found) == pytest.approx(1.0 + 2.0 * share * keep / (1.0 - keep), rel=0.2)
 
 
 def test_a_parameter_that_no_row_feels_is_refused_by_name(rng: np.random.Generator) -> None:
