@@ -54,7 +54,7 @@ class Run:
     name: str
     role: str
     rate: float = 1000.0  # samples a second
-    duration: float = 4.0  # s
+    duration: float = 2.5  # s
 
 
 RUNS = (

@@ -134,7 +134,7 @@ def identify_spool(
         position = fit_position(rig, measured, huber)
     else:
         notes.append(
-            "spool_position was not measured: the static law, millimetres over volts, cannot be told, since the "
+            "the spool's position was not measured: the static law, millimetres over volts, cannot be told, since the "
             "valve's tables state the flow over volts; what pressures still show is the centre, the dead band and "
             "the lag"
         )
@@ -147,7 +147,7 @@ def identify_spool(
     else:
         notes.append(
             "no pressures were measured: the command at which air begins to flow, and so the dead band and the "
-            "pneumatic centre, cannot be told; the centre below is that of the spool's travel"
+            "pneumatic centre, cannot be told; the middle above is that of the spool's travel"
         )
     return SpoolResult(rig.title, path.name, position, pressure, findings, tuple(notes))
 

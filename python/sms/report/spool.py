@@ -5,9 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from sms import _core
-from sms.identification.spool import EQUATION, LawFit, PositionFit, SpoolResult, static_law
+from sms.identification.spool import (
+    EQUATION,
+    LawFit,
+    PositionFit,
+    SpoolResult,
+    SpoolRun,
+    static_law,
+)
 from sms.identification.spool_result import sentences
 from sms.parameters import PARAMETERS
 from sms.report.bench_fit import bench_parts
@@ -26,6 +35,7 @@ from sms.units_display import format_estimate, format_quantity, words
 
 _COLOURS: dict[str, Colour] = {"cubic": "extended", "linear": "baseline"}
 _POINTS = 1500  # of a record in the static map
+SETTLED = 0.03  #: s, after which a spool has followed
 
 
 def spool_html(result: SpoolResult) -> str:
@@ -76,8 +86,7 @@ def _position_parts(fit: PositionFit, figures: dict[str, list[dict[str, Any]]]) 
 def _static_view(fit: PositionFit) -> dict[str, Any]:
     command = np.concatenate([r.command for r in fit.runs])
     position = np.concatenate([r.position for r in fit.runs])
-    speed = np.concatenate([np.gradient(r.command, r.step) for r in fit.runs])
-    slow = np.abs(speed) < 1.0  # V/s: behind by less than 4 mV at 65 Hz
+    slow = np.concatenate([_slow(r) for r in fit.runs])
     drawn = np.arange(0, command.size, max(command.size // _POINTS, 1))
     still = drawn[slow[drawn]]
     grid = np.linspace(command.min(), command.max(), 200)
@@ -95,6 +104,14 @@ def _static_view(fit: PositionFit) -> dict[str, Any]:
         )
     panels = [panel("spool [mm]", top, share=2), panel("measured − law [µm]", below)]
     return view("", "command [V]", panels)
+
+
+def _slow(run: SpoolRun) -> NDArray[np.bool_]:
+    """(n,): where the command has run slower than 1 V/s for SETTLED, so that the spool is less than 4 mV behind."""
+    speed = np.abs(np.diff(run.command, prepend=run.command[0])) / run.step
+    width = max(round(SETTLED / run.step), 1)
+    fastest = maximum_filter1d(speed, width, origin=(width - 1) // 2)
+    return np.asarray(fastest < 1.0)
 
 
 def _run_view(fit: PositionFit, number: int) -> dict[str, Any]:
