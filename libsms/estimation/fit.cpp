@@ -173,6 +173,10 @@ Box box_of(const Aim& aim) {
 
 // The parameters that stand at a bound with the minimum beyond it: the gradient points inwards.
 std::vector<int> pressed(const Residuals& residuals, const Box& box, const Eigen::VectorXd& x) {
+  const Eigen::ArrayXd margin = 1e-9 * (box.upper - box.lower).array();
+  if ((x.array() > box.lower.array() + margin && x.array() < box.upper.array() - margin).all()) {
+    return {};  // an evaluation with derivatives is what a fit costs
+  }
   Eigen::VectorXd r(residuals.num_residuals());
   RowMatrix jacobian(residuals.num_residuals(), x.size());
   const double* at = x.data();
@@ -181,8 +185,7 @@ std::vector<int> pressed(const Residuals& residuals, const Box& box, const Eigen
   const Eigen::VectorXd slope = jacobian.transpose() * r;
   std::vector<int> out;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double margin = 1e-9 * (box.upper[i] - box.lower[i]);
-    if ((x[i] <= box.lower[i] + margin && slope[i] > 0.0) || (x[i] >= box.upper[i] - margin && slope[i] < 0.0)) {
+    if ((x[i] <= box.lower[i] + margin[i] && slope[i] > 0.0) || (x[i] >= box.upper[i] - margin[i] && slope[i] < 0.0)) {
       out.push_back(static_cast<int>(i));
     }
   }

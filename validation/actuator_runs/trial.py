@@ -2,7 +2,7 @@
 
     python -m validation.actuator_runs.trial [--repeats 200] [--seed 1] [--machine other] [--file trials.jsonl]
 
-Each repeat is another machine within what its rig file declares, other excitations, other noise: four runs of four
+Each repeat is another machine within what its rig file declares, other excitations, other noise: three runs of three
 seconds (draw.py). One repeat is one line of the file; a run that was stopped goes on where it ended. The table is of
 all repeats in the file that were asked for.
 """
@@ -81,6 +81,12 @@ def table(repeats: Sequence[Repeat]) -> list[str]:
             f"| {words(name)} | {len(rows)} of {len(repeats)} | {100.0 * covered:.1f} % | "
             f"{rms:.2g} {unit.label} | {stated:.2g} {unit.label} |"
         )
+    together = np.concatenate([list(r.told.values()) for r in repeats])
+    together = together[np.isfinite(together[:, 2])]
+    held = np.abs(together[:, 1] - together[:, 0]) <= LEVEL * together[:, 2]
+    lines.append(
+        f"\n{held.sum()} of {held.size} intervals hold the truth: {100.0 * held.mean():.1f} %"
+    )
     return lines
 
 

@@ -39,6 +39,8 @@ STATIC = {
 }
 EQUATION = {"cubic": "eq. 4.1, cubic", "linear": "eq. 4.2, linear"}
 DYNAMIC = ("valve_frequency", "valve_damping_ratio", "command_delay")
+RESTS = 0.002  #: of the travel: nearer to its extreme a spool counts as at its end
+GOES_ON = 0.1  #: V, which would move it by 1 percent of its travel
 MOVES = 2e-5  #: m, the least travel that tells a law
 SPEED_OF_SAMPLING = 4.0  #: samples in a period of the spool, the least that shows its lag
 SMALL = {"valve_frequency": 0.2, "valve_damping_ratio": 0.3}
@@ -268,8 +270,8 @@ def _reaches_its_end(runs: Sequence[SpoolRun]) -> bool:
     """Whether the spool rests at an end of its travel while the command goes on."""
     for run in runs:
         for extreme in (run.position.max(), run.position.min()):
-            at_end = np.abs(run.position - extreme) < 0.01 * np.ptp(run.position)
-            if at_end.mean() > 0.01 and np.ptp(run.command[at_end]) > 0.5:
+            at_end = np.abs(run.position - extreme) < RESTS * np.ptp(run.position)
+            if at_end.mean() > 0.005 and np.ptp(run.command[at_end]) > GOES_ON:
                 return True
     return False
 
