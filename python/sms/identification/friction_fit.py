@@ -34,6 +34,7 @@ FELT = 0.05
 """Least share of the residual's scatter that a parameter must move at its usual size."""
 FALSE = 0.05
 """Chance of claiming any parameter of a law that the truth does not have."""
+ALWAYS = ("coulomb_force", "viscous_friction")
 _DRY = ("coulomb_force", "sensor_offset_rod_force", "viscous_friction")
 _TWO_SIDES = ("coulomb_force_deceleration_change", "viscous_friction_deceleration_change")
 LAWS: dict[str, tuple[str, ...]] = {
@@ -76,7 +77,7 @@ class Told:
     freedom: int
     """Degrees of freedom of that error."""
     judged: int
-    """How many parameters of the law are judged together."""
+    """How many parameters of the law are judged together; 1 for what no cylinder lacks."""
     scatter: float
     """Standard deviation over the runs, each fitted alone; nan with fewer than two."""
     runs: tuple[float, ...]
@@ -161,7 +162,8 @@ def fit_law(
         error = float(np.fmax(own, between[i]))
         freedom = own_freedom if error == own else len(runs) - 1
         value = float(found.value[i])
-        told.append(Told(name, value, error, max(freedom, 1), len(names), scatter, runs))
+        judged = 1 if name in ALWAYS else len(names)
+        told.append(Told(name, value, error, max(freedom, 1), judged, scatter, runs))
     return LawFit(
         law, found, tuple(told), left_out,
         rms_of(found.residual[used]), _validated(validate, law, found.params),
