@@ -9,7 +9,7 @@ import numpy as np
 
 from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.diagnosis.result import Array
-from sms.diagnosis.search import SIGNIFICANT, Trial
+from sms.diagnosis.search import ALIKE, SIGNIFICANT, Trial
 from sms.diagnosis.statistics import interval, resampled, sum_by, weighted_ms
 from sms.parameters import common_parameter
 from sms.units_display import format_quantity
@@ -20,8 +20,6 @@ WORTH_OF_NOISE = 0.02
 """The same, as a share of the noise floor itself: a healthy machine has hardly any error beyond it."""
 WORTH_OF_LEFT = 0.5
 """Share of what the model as it stands leaves beyond the noise, which is worth a name whatever the original was."""
-ALIKE = 0.95
-"""Cosine of two footprints in the data above which two effects cannot be told apart."""
 
 
 @dataclass(frozen=True)

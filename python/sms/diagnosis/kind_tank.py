@@ -50,11 +50,9 @@ def _record(run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
 
 
 def derived(run: Run) -> dict[str, Array]:
-    """How fast the tank fills, and which way the command means it to."""
-    return {
-        "pressure rate [Pa/s]": run.rate("tank_pressure"),
-        "direction": np.sign(run.signals["valve_command"] - 5.0),
-    }
+    """How fast the tank fills or empties."""
+    rate = run.rate("tank_pressure")
+    return {"pressure rate [Pa/s]": rate, "direction": np.sign(rate)}
 
 
 # ---- experiments ---------------------------------------------------------------------------------

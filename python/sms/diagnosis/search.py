@@ -37,6 +37,8 @@ MOST_FITS = 5
 """Effects of a round that are fitted in full, where a fit is a simulation of every record."""
 WORTH_A_FIT = 0.3
 """Of the chi-square that the most promising effect would take: what an effect must promise to be fitted."""
+ALIKE = 0.95
+"""Cosine of two footprints in the data above which two effects cannot be told apart by them."""
 WORTH_A_LOOK = 0.5
 """Of the chi-square that the best fit takes: what a fit must take to be judged on unseen records."""
 
@@ -113,6 +115,14 @@ def _try_on_runs(
         int(k)
         for k in np.argsort(-promise)[:MOST_FITS]
         if found.p_value[k] <= SIGNIFICANT and promise[k] > WORTH_A_FIT * promise.max()
+    ]
+    # What a step promises may be little where the way is long, as from a volume ten times too large.
+    promising += [
+        k
+        for k in range(len(effects))
+        if k not in promising
+        and found.p_value[k] <= SIGNIFICANT
+        and any(found.cosine[k, other] > ALIKE for other in promising[:1])
     ]
     fits = {
         k: fit(

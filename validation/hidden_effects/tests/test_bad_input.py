@@ -26,7 +26,7 @@ def errors(found: Diagnosis) -> str:
         ("tank", "tank_pressure"),
         ("bench", "chamber_pressure_upper"),
         ("bench", "extension"),
-        ("platform", "chamber_pressure_lower_2"),
+        pytest.param("platform", "chamber_pressure_lower_2", marks=pytest.mark.full),
     ],
 )
 @pytest.mark.parametrize("noise", [0.0, 1.0])
