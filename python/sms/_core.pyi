@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformSimulation', 'Problem', 'StatusError', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'simulate_tank', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -357,6 +357,14 @@ class Params:
         """
     @chamber_leakage_upper.setter
     def chamber_leakage_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def clock_skew_attitude(self) -> float:
+        """
+        clock_skew: by how much the attitude logger's clock is late against the others [s]; neutral
+        """
+    @clock_skew_attitude.setter
+    def clock_skew_attitude(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def clock_skew_chamber_pressure(self) -> float:
@@ -1343,12 +1351,28 @@ class Params:
     def sensor_gain_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def sensor_gain_pitch(self) -> float:
+        """
+        relative gain error of the pitch sensor [1]; neutral
+        """
+    @sensor_gain_pitch.setter
+    def sensor_gain_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def sensor_gain_rod_force(self) -> float:
         """
         relative gain error of the load cell [1]; neutral
         """
     @sensor_gain_rod_force.setter
     def sensor_gain_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_gain_roll(self) -> float:
+        """
+        relative gain error of the roll sensor [1]; neutral
+        """
+    @sensor_gain_roll.setter
+    def sensor_gain_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def sensor_gain_supply_pressure(self) -> float:
@@ -1399,6 +1423,22 @@ class Params:
     def sensor_lag_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def sensor_lag_pitch(self) -> float:
+        """
+        sensor_lag: by how much the pitch sensor's filter is late [s]; neutral
+        """
+    @sensor_lag_pitch.setter
+    def sensor_lag_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_lag_roll(self) -> float:
+        """
+        sensor_lag: by how much the roll sensor's filter is late [s]; neutral
+        """
+    @sensor_lag_roll.setter
+    def sensor_lag_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def sensor_lag_tank_pressure(self) -> float:
         """
         sensor_lag: by how much the tank's pressure sensor is late [s]; neutral
@@ -1431,12 +1471,28 @@ class Params:
     def sensor_offset_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def sensor_offset_pitch(self) -> float:
+        """
+        zero error of the pitch sensor [rad]; neutral
+        """
+    @sensor_offset_pitch.setter
+    def sensor_offset_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def sensor_offset_rod_force(self) -> float:
         """
         zero error of the load cell [N]; neutral
         """
     @sensor_offset_rod_force.setter
     def sensor_offset_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_offset_roll(self) -> float:
+        """
+        zero error of the roll sensor [rad]; neutral
+        """
+    @sensor_offset_roll.setter
+    def sensor_offset_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def sensor_offset_supply_pressure(self) -> float:
@@ -2219,6 +2275,25 @@ class TankPlantProblem(Problem):
     @property
     def windows(self) -> list[Window]:
         ...
+class SpoolRecord:
+    """
+    Command and measured spool position, evenly sampled; (n,), SI.
+    """
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        ...
+    @property
+    def first_compared(self) -> int:
+        """
+        Sample from which on positions are compared; before it the spool is run up.
+        """
+class SpoolProblem(Problem):
+    """
+    Predicted less measured spool position, m.
+    """
+    def __init__(self, records: collections.abc.Sequence[SpoolRecord], law: str = 'cubic') -> None:
+        """
+        law: cubic (eq. 4.1) or linear (eq. 4.2).
+        """
 class Fit:
     """
     The result of a least-squares fit.
@@ -2258,6 +2333,57 @@ class Fit:
         """
         (rows,), predicted minus measured at params, not weighted
         """
+class LegParams(Params):
+    """
+    Parameters of a machine with three legs: "name" is that of all legs, "name:2" by how much that of leg 2 is larger, zero unless it is set.
+    """
+    def __getitem__(self, arg0: str) -> float:
+        ...
+    def __init__(self, common: Params = ...) -> None:
+        ...
+    def __setitem__(self, arg0: str, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def copy(self) -> LegParams:
+        ...
+    @property
+    def legs(self) -> list[Params]:
+        """
+        What each leg has, as simulate_platform takes it.
+        """
+class PlatformRecord:
+    """
+    One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.
+    """
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., roll: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., pitch: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
+        ...
+class PlatformProblem:
+    """
+    Prediction errors over windows, in units of the noise.
+    """
+    def __init__(self, *, records: collections.abc.Sequence[PlatformRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', masses: typing.SupportsInt | typing.SupportsIndex = 0, window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.0025, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+        ...
+    def errors(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,): predicted less measured over the noise, at the best initial states.
+        """
+    def evaluate(self, params: LegParams, free: collections.abc.Sequence[str] = []) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
+        """
+        (residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.
+        """
+    def hidden(self, params: LegParams, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, 9 knots): derivatives against hidden forces on the three pistons and hidden flows into the three lower and the three upper chambers, in each window.
+        """
+    def settle(self, params: LegParams) -> None:
+        """
+        Let later searches for initial states begin at the best ones of these parameters.
+        """
+    @property
+    def rows(self) -> int:
+        ...
+    @property
+    def windows(self) -> list[Window]:
+        ...
 def air_spring(params: Params, mean_pressure: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
     Spring constant of both chambers, N/m (eq. 8.2); Pa absolute.
@@ -2485,6 +2611,10 @@ def sampled_extension(params: Params, extension: typing.Annotated[numpy.typing.A
 def simplified_plant(params: Params, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, mass: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float]:
     """
     (natural frequency, rad/s; damping ratio), eq. 8.2 and 8.3; Pa absolute, kg.
+    """
+def simulate_tank(*, record: TankPlantRecord, params: Params, pressure: typing.SupportsFloat | typing.SupportsIndex, valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    (n, channels): what the sensors that `record` has would read under its command, of a tank at rest at first, at `pressure`, Pa absolute.
     """
 def six_leg_inverse(params: Params, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
     """
