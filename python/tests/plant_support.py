@@ -72,9 +72,9 @@ def write_bench(folder: Path, seed: int, truth: Mapping[str, float]) -> Path:
 # ---- platform ------------------------------------------------------------------------------------
 
 PLATFORM_NOISE = {
-    "extension": 7e-5,
-    "chamber_pressure_lower": 300.0,
-    "chamber_pressure_upper": 300.0,
+    "extension": (7e-5, "0.07 mm"),
+    "chamber_pressure_lower": (300.0, "300 Pa"),
+    "chamber_pressure_upper": (300.0, "300 Pa"),
 }
 PLATFORM_RIG = """
 [rig]
@@ -103,8 +103,9 @@ def write_platform(folder: Path, seed: int, truth: Mapping[str, float], length: 
         machine[name] = value
     text = PLATFORM_RIG
     for signal in ("valve_command", *PLATFORM_NOISE):
-        noise = PLATFORM_NOISE.get(signal)
-        source = "{}" if noise is None else f"{{ noise = {noise} }}"
+        source = (
+            f'{{ noise = "{PLATFORM_NOISE[signal][1]}" }}' if signal in PLATFORM_NOISE else "{}"
+        )
         text += "".join(f"{signal}_{leg} = {source}\n" for leg in (1, 2, 3))
     for number, role in enumerate(("identify", "validate")):
         time = 1e-3 * np.arange(0.0, length / 1e-3)
@@ -115,7 +116,7 @@ def write_platform(folder: Path, seed: int, truth: Mapping[str, float], length: 
         signals = {"time": time[::EVERY]}
         for leg in (1, 2, 3):
             signals[f"valve_command_{leg}"] = run[f"valve_command_{leg}"][::EVERY]
-            for name, size in PLATFORM_NOISE.items():
+            for name, (size, _) in PLATFORM_NOISE.items():
                 clean = run[f"{name}_{leg}"][::EVERY]
                 signals[f"{name}_{leg}"] = clean + random.normal(0.0, size, clean.size)
         write_record(folder / f"run{number}.csv", signals)
