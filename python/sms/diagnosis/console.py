@@ -118,7 +118,7 @@ def _gain(diagnosis: Diagnosis) -> Padding | None:
 def _record_of(g: Gain, diagnosis: Diagnosis) -> str:
     several = len({x.signal for x in diagnosis.gain}) > 1
     tested = " (test)" if g.role == "test" else ""
-    return f"{g.record}{tested}, {g.signal}" if several else f"{g.record}{tested}"
+    return f"{g.record}{tested}, {words(g.signal)}" if several else f"{g.record}{tested}"
 
 
 def _empirical(diagnosis: Diagnosis) -> Padding | None:
