@@ -59,7 +59,7 @@ not be tried without the DSP stands in [porting to a DSP](porting_to_dsp.md).
 
 
 def run(*command: str) -> str:
-    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=300).stdout
+    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=1800).stdout
 
 
 def counts(text: str) -> list[Count]:

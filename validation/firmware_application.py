@@ -35,7 +35,7 @@ LARGEST_DIFFERENCE = 1e-5
 """m, between the extensions of the two runs."""
 
 
-def run(*command: str, cwd: Path | None = None, timeout: float = 600.0) -> str:
+def run(*command: str, cwd: Path | None = None, timeout: float = 3600.0) -> str:
     """Standard output of a command; raises CalledProcessError, which main() shows."""
     return subprocess.run(
         command, capture_output=True, text=True, check=True, timeout=timeout, cwd=cwd

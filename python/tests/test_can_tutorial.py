@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -32,13 +33,13 @@ def test_every_command_of_the_tutorial(tmp_path: Path) -> None:
         env=os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}", "COLUMNS": "160"},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=1800,  # most of it is the diagnosis, on a computer that has other work, too
         check=False,
     )
     assert result.returncode == 0, result.stdout + result.stderr
     assert "mode disabled" in result.stdout
     assert "position_gain = 40" in result.stdout
-    assert result.stdout.count("set-points, one every 10 ms") == 2
+    assert result.stdout.count("set-points, one every 10 ms") == 3
     legs = {
         int(leg): (float(volts), float(pressure))
         for leg, volts, pressure in re.findall(
@@ -51,9 +52,23 @@ def test_every_command_of_the_tutorial(tmp_path: Path) -> None:
     for leg in (1, 3):
         assert abs(legs[leg][0]) < 40.0
         assert abs(legs[leg][1]) < 15.0
+    diagnosis = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
+    assert diagnosis["verdict"] == "cause"
+    (cause,) = diagnosis["causes"]
+    assert [p["name"] for p in cause["parameters"]] == ["chamber_leakage_lower:2"]
+    assert cause["parameters"][0]["value"] == pytest.approx(2e-9, rel=0.1)
 
 
 def test_the_page_has_the_commands_it_is_about() -> None:
     text = "\n".join(commands(PAGE.read_text()))
-    for command in ("rig", "monitor", "get", "set", "drive", "replay", "table"):
-        assert f"sms can {command}" in text
+    for command in (
+        "can rig",
+        "can monitor",
+        "can get",
+        "can set",
+        "can drive",
+        "can replay",
+        "can table",
+        "diagnose",
+    ):
+        assert f"sms {command}" in text
