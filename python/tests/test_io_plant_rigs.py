@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sms.io import InputError, load_rig, write_record
+from sms.io import InputError, load_rig, write_extended_rig, write_record
 from sms.io.check import check_record
 from sms.io.records import Record, load_record
+from sms.io.rig import Declaration
 from sms.io.signals import KINDS, SIGNAL_UNITS, of_legs, without_leg
 
 Array = NDArray[np.float64]
@@ -140,3 +141,18 @@ def test_a_piston_that_rests_at_its_end_is_no_fault(tmp_path: Path) -> None:
     extension = np.clip(bench_signals()["extension"], 0.15, None)
     found, _ = first_record(bench(tmp_path, extension=extension))
     assert found == []
+
+
+def test_a_parameter_of_one_leg_is_written_into_the_rig_file_of_a_platform(tmp_path: Path) -> None:
+    lines = "".join(f"{name} = {{}}\n" for name in KINDS["platform"].needed if name != "time")
+    record = '[[records]]\nfile = "one.csv"\nrole = "identify"\n'
+    signals = {name: np.linspace(0.0, 1.0, 5) for name in KINDS["platform"].needed}
+    write_record(tmp_path / "one.csv", signals)
+    path = tmp_path / "rig.toml"
+    path.write_text(f'[rig]\nkind = "platform"\n[signals]\ntime = "time"\n{lines}{record}')
+    found = {"chamber_leakage_lower:2": Declaration(2e-9, 1e-11)}
+    write_extended_rig(path, tmp_path / "extended.toml", found, "what was found")
+    rig = load_rig(tmp_path / "extended.toml")
+    assert rig.declared("chamber_leakage_lower:2").value == pytest.approx(2e-9)
+    assert rig.start()["chamber_leakage_lower:2"] == pytest.approx(2e-9)
+    assert rig.start()["chamber_leakage_lower"] == 0.0

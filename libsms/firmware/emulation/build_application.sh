@@ -18,7 +18,7 @@ sources=$(cd "$firmware" && for source in *.cpp; do echo "${source%.cpp}"; done 
 # shellcheck disable=SC2086  # lists of words, from here on
 for source in $sources main; do
   optimise=-O2
-  case $source in console | derived | settings) optimise=-Os ;; esac
+  case $source in console | settings) optimise=-Os ;; esac
   ${CMAKE_CXX_COMPILER_LAUNCHER-} arm-none-eabi-g++ $target -std=c++14 $optimise $bare $strict $includes -fstack-usage -c "$firmware/$source.cpp" \
     -o "$out/$source.app.arm.o"
 done

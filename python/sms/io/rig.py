@@ -118,12 +118,19 @@ class Rig:
     @property
     def table(self) -> Mapping[str, Parameter]:
         """Bounds and units of every parameter that the model has."""
-        return LEG_PARAMETERS if self.kind == "platform" else PARAMETERS
+        return _parameters_of(self.kind)
 
     def start(self) -> _core.Params:
         """Every parameter as declared."""
-        common = _core.Params(**{name: known.value for name, known in self.parameters.items()})
-        return _core.LegParams(common) if self.kind == "platform" else common
+        declared = {name: known.value for name, known in self.parameters.items()}
+        common = _core.Params(**{n: value for n, value in declared.items() if not is_of_leg(n)})
+        if self.kind != "platform":
+            return common
+        machine = _core.LegParams(common)
+        for name, value in declared.items():
+            if is_of_leg(name):
+                machine[name] = value
+        return machine
 
 
 def load_rig(path: str | os.PathLike[str]) -> Rig:
@@ -153,7 +160,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
         speed_above=speed_above,
         signals=_signals(file, path),
         parameters={
-            name: _declaration(name, table, f"{path}, [parameters]")
+            name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(file.rig.kind))
             for name, table in file.parameters.items()
         },
         records=_records(file.records, data, path),
@@ -245,13 +252,23 @@ def _size(signal: str, text: str | float, where: str) -> float:
     return size
 
 
-def _declaration(name: str, table: ParameterTable, where: str) -> Declaration:
+def _parameters_of(kind: str) -> Mapping[str, Parameter]:
+    """A platform has parameters of one leg, too: "chamber_leakage_lower:2"."""
+    return LEG_PARAMETERS if kind == "platform" else PARAMETERS
+
+
+def _declaration(
+    name: str,
+    table: ParameterTable,
+    where: str,
+    known: Mapping[str, Parameter] = PARAMETERS,
+) -> Declaration:
     where = f"{where} {name}"
-    if name not in PARAMETERS:
+    if name not in known:
         near = nearest(name, PARAMETERS)
         remedy = f"did you mean '{near}'?" if near else "see the table of parameters (params.def)"
         raise InputError(f"{where}: there is no such parameter; {remedy}")
-    parameter = PARAMETERS[name]
+    parameter = known[name]
     value, uncertainty = parameter.default, parameter.uncertainty
     if table.value is not None:
         value = to_si(table.value, parameter.unit, where)

@@ -20,7 +20,7 @@ from sms.io.rig import Declaration, check_bounds, files_in, interpret
 from sms.io.schema import parse_rig_text, read_rig_text
 from sms.io.signals import column_name
 from sms.io.units import from_si, interval_from_si, split_quantity
-from sms.parameters import PARAMETERS
+from sms.parameters import Parameter
 
 
 def write_bytes_atomically(path: Path, content: bytes) -> None:
@@ -84,7 +84,12 @@ def write_extended_rig(
         document.add("parameters", tomlkit.table())
     table: Any = document["parameters"]
     for name, declaration in parameter_updates.items():
-        _set_parameter(table, name, declaration, f"{out_path}, [parameters] {name}")
+        where = f"{out_path}, [parameters] {name}"
+        if name not in rig.table:
+            raise InputError(
+                f"{where}: there is no such parameter; {did_you_mean(name, rig.table)}"
+            )
+        _set_parameter(table, rig.table[name], declaration, where)
     _keep_data_reachable(document, original_path, out_path)
     _keep_related_reachable(document, original_path, out_path)
     _keep_dbc_reachable(document, original_path, out_path)
@@ -99,11 +104,9 @@ def write_extended_rig(
     write_text_atomically(out_path, extended)
 
 
-def _set_parameter(table: Any, name: str, declaration: Declaration, where: str) -> None:
+def _set_parameter(table: Any, parameter: Parameter, declaration: Declaration, where: str) -> None:
     """Set one entry of [parameters], in place where there is one."""
-    if name not in PARAMETERS:
-        raise InputError(f"{where}: there is no such parameter; {did_you_mean(name, PARAMETERS)}")
-    parameter = PARAMETERS[name]
+    name = parameter.name
     check_bounds(parameter, declaration.value, where)
     old = table.get(name)
     entry = old if isinstance(old, Mapping) else {"value": old}
