@@ -166,9 +166,7 @@ def test_the_spool_shows_in_the_pressures(drawn: Drawn) -> None:
     result = identify_spool(drawn[0])
     assert result.position is None
     assert result.pressure is not None
-    assert any(
-        "position was not measured" in text for text in spool_sentences(result)
-    )
+    assert any("position was not measured" in text for text in spool_sentences(result))
     told = {t.name: t for t in result.pressure.fit.wanted}
     assert (
         abs(told["valve_centre"].value - drawn[1]["valve_centre"])
