@@ -93,18 +93,21 @@ def test_page_and_json_hold_everything(identified: BenchResult) -> None:
 
 
 def test_without_motion_nothing_of_mass_and_friction_is_asked(drawn: Drawn, tmp_path: Path) -> None:
-    for record in ("identify_1_multisine", "identify_2_steps"):
-        source = tmp_path.with_name(f"{tmp_path.name}_{record}")
-        rig = changed(
-            drawn[0], source, record, extension=lambda x: 0.2 + 1e-5 * np.sin(np.arange(x.size))
-        )
-        notes = load_bench(rig, "actuator").notes
-        assert any("nothing of mass and friction" in n and "dead volumes" in n for n in notes)
+    blocked: dict[str, Change] = {
+        "extension": lambda x: 0.2 + 1e-5 * np.sin(np.arange(x.size)),
+        "valve_command": lambda u: u.clip(
+            lower=5.0
+        ),  # both ways it would be a dead sensor's record
+    }
+    rig = changed(drawn[0], tmp_path / "a", "identify_1_multisine", **blocked)
+    notes = load_bench(rig, "actuator").notes
+    assert any("nothing of mass and friction" in n and "dead volumes" in n for n in notes)
 
 
 def test_records_that_do_not_stir_are_refused_with_what_to_do(drawn: Drawn, tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
-    still = {
+    still: dict[str, Change] = {
+        "valve_command": lambda u: np.full(u.size, 5.0),
         "extension": lambda x: 0.2 + 1e-5 * rng.standard_normal(x.size),
         "chamber_pressure_lower": lambda x: 2.8e5 + 300.0 * rng.standard_normal(x.size),
         "chamber_pressure_upper": lambda x: 2.9e5 + 300.0 * rng.standard_normal(x.size),
