@@ -16,14 +16,16 @@ from sms import _core
 from sms.diagnosis.catalogue import Effect
 from sms.diagnosis.gauss_newton import changed
 from sms.diagnosis.hypothesis import Data, Fitted, fit, unseen
-from sms.diagnosis.judgement import TELLS_APART, by_window
+from sms.diagnosis.judgement import TELLS_APART, WORTH_OF_LEFT, by_window
 from sms.diagnosis.result import Array
 from sms.diagnosis.search import Trial
 
 NEARLY = 0.9
 """Of what the best of the rivals takes: what a rival has to take."""
 IDLE = 0.02
-"""Of what all causes take: one that adds less than this to the others has stood in for them, and is dropped."""
+"""Of what all causes take: one that adds less than this to the others has stood in for them, and is dropped.
+
+Unless it takes half of what the others leave: beside a very large cause a second one is small and real."""
 
 
 def judged_together(
@@ -42,7 +44,8 @@ def judged_together(
         tried = [(m, _model([*others, m.effect], baseline, _near(final, m), data)) for m in rivals]
         best, fitted = _best(tried, data) if tried else (None, without)
         left, alone = _left(fitted, data).sum(), _left(without, data).sum()
-        if best is None or alone - left < IDLE * (original - left):
+        idle = alone - left < min(IDLE * (original - left), WORTH_OF_LEFT * alone)
+        if best is None or idle:
             kept.pop(place)
             final = without
             continue
