@@ -77,6 +77,14 @@ bool is_partly_warm(const Params<S>& p, const ActuatorLaws& laws) {
   return laws.chamber == ChamberLaw::polytropic && !is_absent(p.heat_share);
 }
 
+// The valve's tables hold for a tank of given heat ratios, and its flow follows them (valve_table.hpp).
+template <typename S>
+Params<S> partly_warm(Params<S> p) {
+  p.inflow_heat_ratio += p.heat_share * (p.heat_capacity_ratio - p.inflow_heat_ratio);
+  p.outflow_heat_ratio += p.heat_share * (p.heat_capacity_ratio - p.outflow_heat_ratio);
+  return p;
+}
+
 template <typename S>
 ActuatorState<S> partly_warm(const Params<S>& p, ActuatorState<S> state) {
   state.lower.temperature = p.air_temperature + p.heat_share * (state.lower.temperature - p.air_temperature);

@@ -115,6 +115,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   BenchState<S> state = bench_at_rest(bench, start[0], S(0), S(2e5));
   state.velocity = start[1];
   const bool partly_warm = detail::is_partly_warm(p, laws_);
+  const Bench<S> warm_bench{partly_warm ? detail::partly_warm(p) : p, laws_};
   const bool warm = partly_warm || laws_.chamber == ChamberLaw::energy;
   state.actuator.lower = {start[2], warm ? S(p.air_temperature + start[6]) : p.air_temperature};
   state.actuator.upper = {start[3], warm ? S(p.air_temperature + start[7]) : p.air_temperature};
@@ -140,7 +141,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
     if (partly_warm) {
       BenchState<S> seen = y;
       seen.actuator = detail::partly_warm(p, y.actuator);
-      derivative(bench, seen, input, t, rate);
+      derivative(warm_bench, seen, input, t, rate);
       detail::add_heat(p, y.actuator.lower, t.actuator.lower, t.actuator.flow.lower, rate.actuator.lower);
       detail::add_heat(p, y.actuator.upper, t.actuator.upper, t.actuator.flow.upper, rate.actuator.upper);
     } else {

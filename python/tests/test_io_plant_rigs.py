@@ -139,7 +139,9 @@ def test_uneven_time_is_an_error(tmp_path: Path) -> None:
 
 def test_a_piston_that_rests_at_its_end_is_no_fault(tmp_path: Path) -> None:
     extension = np.clip(bench_signals()["extension"], 0.15, None)
-    extension += np.random.default_rng(2).normal(0.0, 5e-5, extension.size)  # the sensor's noise goes on
+    extension += np.random.default_rng(2).normal(
+        0.0, 5e-5, extension.size
+    )  # the sensor's noise goes on
     found, _ = first_record(bench(tmp_path, extension=extension))
     assert found == []
 

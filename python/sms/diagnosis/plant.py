@@ -57,9 +57,7 @@ from sms.io.records import Record
 from sms.io.rig import Rig
 
 LEFT = 0.2
-"""Of the baseline's excess: with more left, the best explanation is none."""
-MOST_LEFT = 0.3
-"""Of the baseline's excess, however small that is: what leaves more was imitated, not explained."""
+"""Of the baseline's excess: with more left, the best explanation is none: it imitates, it does not explain."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +131,7 @@ def investigate(
 
     def enough(fitted: Fitted) -> bool:
         left = excess_of(fitted, data)
-        return small(left) and (fitted is baseline or left.total < MOST_LEFT * before.total)
+        return small(left) and (fitted is baseline or left.total < LEFT * before.total)
 
     outcome = find_causes(
         baseline,
@@ -177,7 +175,7 @@ def decide(outcome: Outcome, before: Excess, after: Excess) -> Verdict:
         return "unknown"
     if not outcome.classes:
         return "no-evidence"
-    if after.total > MOST_LEFT * before.total:
+    if after.total > LEFT * before.total:
         return "unknown"
     if len(outcome.classes) > 1:
         return "combination"

@@ -104,6 +104,7 @@ def columns_of(
             continue
         name = effect.parameters[0]
         step = effect.step if params[name] == table[name].default else 0.02 * params[name]
+        step = -step if params[name] + step > table[name].upper else step
         there, _ = problem.evaluate(changed(params, [name], np.array([params[name] + step])))
         columns[:, i] = (there - residual) / step
     return columns
