@@ -56,6 +56,10 @@ def trials(
     first = secrets.randbelow(10**6) if seed is None else seed
     console = Console()
     console.print(f"[dim]--rig {rig} --seed {first} --count {count} --multiple {multiple:g}[/dim]")
+    if rig not in plant_trial.effects.RIGS:
+        raise InputError(
+            f"--rig: there is no virtual '{rig}'; choose {', '.join(plant_trial.effects.RIGS)}"
+        )
     wanted = plant_trial.tasks(rig, first, count, multiple)
     file = out / "trials.jsonl"
     columns = (

@@ -22,3 +22,8 @@ def test_outside_of_a_checkout_it_says_so(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match="is not in a checkout of the project"):
         CliRunner().invoke(app, ["trials", "--count", "1"], catch_exceptions=False)
+
+
+def test_a_rig_that_nobody_simulates_is_named_with_those_that_are() -> None:
+    with pytest.raises(InputError, match="no virtual 'boat'; choose bench, platform, tank"):
+        CliRunner().invoke(app, ["trials", "--rig", "boat"], catch_exceptions=False)

@@ -22,12 +22,15 @@ class LogBus(can.BusABC):
 
     def __init__(self, log: Path, *, speed: float = 1.0) -> None:
         """`speed` times real time, 0 as fast as the listener asks. InputError for a speed below 0."""
+        # What may be refused comes first: a bus that was not opened need not be shut down.
+        speed, frames = _checked(speed), read_frames(log)
+        first = next(frames, None)
         super().__init__(channel=str(log))
         self.channel_info = f"log {log}"
         self.is_over = False
-        self._speed = _checked(speed)
-        self._frames = read_frames(log)
-        self._next = next(self._frames, None)
+        self._speed = speed
+        self._frames = frames
+        self._next = first
         self._first = self._next.timestamp if self._next is not None else 0.0
         self._begin: float | None = None
 
