@@ -181,7 +181,7 @@ def test_any_motion_ends_up_within_the_stroke() -> None:
             motion, roll=motion.roll.clip(-0.3, 0.3), pitch=motion.pitch.clip(-0.3, 0.3)
         )
         allowed = fitted(motion, limits, "clip", "").motion
-        assert demand_of(allowed, limits).stroke_excess(limits).max() < 1e-4
+        assert demand_of(allowed, limits).stroke_excess(limits).max() < 1e-6
 
 
 def test_limits_that_cannot_be() -> None:

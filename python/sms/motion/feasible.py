@@ -126,7 +126,9 @@ def _tilt(motion: DeckMotion, row: int) -> str:
 def _clipped(motion: DeckMotion, limits: Limits) -> tuple[DeckMotion, tuple[Cut, ...]]:
     reached, stroke_cut = _within_stroke(motion, limits)
     slowed, speed_cut = _within_speed(reached, limits)
-    return slowed, tuple(cut for cut in (stroke_cut, speed_cut) if cut is not None)
+    # A straight way between two poses within the stroke may leave it by tenths of a millimetre.
+    inside, _ = _within_stroke(slowed, limits)
+    return inside, tuple(cut for cut in (stroke_cut, speed_cut) if cut is not None)
 
 
 def _within_stroke(motion: DeckMotion, limits: Limits) -> tuple[DeckMotion, Cut | None]:
