@@ -16,8 +16,11 @@
 // r itself is e at the best z found, not its projection: where friction has a kink the search may end at a point from
 // which the linearised model promises more than there is.
 //
-// A search begins where that of the last Jacobian ended; with a Jacobian, a window that is left badly off is searched
-// from its guess as well.
+// A search begins where the best state of the last Jacobian has moved to with the parameters since, to first order:
+//
+//   z = z* - R^-1 Q' (de/dtheta) (theta - theta*)
+//
+// With a Jacobian, a window that is left badly off is searched from its guess as well.
 //
 // So a residual and its Jacobian are those of the parameters alone, windows are independent of each other, and a window
 // is the natural block of whatever is resampled.
@@ -33,6 +36,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <stdexcept>
 #include <thread>
 
@@ -47,7 +51,7 @@ struct Window {
   int samples;            // including the first
   int row;                // where its residuals begin
   int rows;               // samples times channels
-  Eigen::VectorXd start;  // where the search for the initial state begins
+  Eigen::VectorXd start;  // the best initial state of the last Jacobian; at first a guess
 };
 
 struct WindowOptions {
@@ -80,6 +84,8 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
         windows_.push_back(w);
       }
     }
+    follow_.resize(windows_.size());
+    found_.resize(windows_.size());
   }
 
   int rows() const override { return rows_; }
@@ -92,26 +98,36 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
       jacobian->resize(rows_, static_cast<Eigen::Index>(free.size()));
     }
     in_parallel([&](std::size_t k) {
-      const Shot shot = jacobian != nullptr ? search(params, windows_[k]) : shoot(params, windows_[k]);
-      residual->segment(windows_[k].row, windows_[k].rows) = shot.residual;
+      const Window w = begun(params, k);
+      const Shot shot = jacobian != nullptr ? search(params, w) : shoot(params, w);
+      residual->segment(w.row, w.rows) = shot.residual;
+      found_[k] = shot.start;
       if (jacobian != nullptr) {
-        differentiate(params, free, windows_[k], shot, jacobian);
+        follow_[k] = differentiate(params, free, w, shot, jacobian);
         windows_[k].start = shot.start;
       }
     });
+    last_ = params;
+    if (jacobian != nullptr) {
+      anchor_ = params;
+      followed_ = free;
+    }
   }
 
   // Residuals before the projection, at the best initial states: predicted less measured, over the noise.
   Eigen::VectorXd errors(const Machine<double>& params) const {
     Eigen::VectorXd out(rows_);
-    in_parallel(
-        [&](std::size_t k) { out.segment(windows_[k].row, windows_[k].rows) = shoot(params, windows_[k]).residual; });
+    in_parallel([&](std::size_t k) {
+      out.segment(windows_[k].row, windows_[k].rows) = shoot(params, begun(params, k)).residual;
+    });
     return out;
   }
 
   // The best initial states at `params` become where later searches begin.
   void settle(const Machine<double>& params) {
-    in_parallel([&](std::size_t k) { windows_[k].start = search(params, windows_[k]).start; });
+    followed_.clear();
+    in_parallel([&](std::size_t k) { windows_[k].start = found_[k] = search(params, windows_[k]).start; });
+    last_ = params;
   }
 
   // Derivatives of the projected residuals against inputs that are hidden in the plant's equations: each of
@@ -119,8 +135,9 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // (rows x kHidden * knots), a window's rows belonging to its own knots.
   RowMatrix hidden(const Machine<double>& params, int knots) const {
     RowMatrix out(rows_, Plant::kHidden * knots);
-    in_parallel(
-        [&](std::size_t k) { differentiate_hidden(params, knots, windows_[k], shoot(params, windows_[k]), &out); });
+    in_parallel([&](std::size_t k) {
+      differentiate_hidden(params, knots, windows_[k], shoot(params, begun(params, k)), &out);
+    });
     return out;
   }
 
@@ -135,11 +152,27 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   struct Shot {
     Eigen::VectorXd start;
     Eigen::VectorXd residual;
-    Eigen::MatrixXd basis;  // Q
+    Eigen::MatrixXd basis;                               // Q
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> scaled;  // of de/dz in units of start_scale
 
     template <typename Columns>
     Columns off(const Columns& columns) const {
       return columns - basis * (basis.transpose() * columns);
+    }
+
+    // How the best state moves, when the errors change by `columns` at the state that was.
+    Eigen::MatrixXd move(const Eigen::MatrixXd& columns) const {
+      const Eigen::Index rank = basis.cols();
+      Eigen::MatrixXd z = Eigen::MatrixXd::Zero(kStart, columns.cols());
+      z.topRows(rank) = -scaled.matrixR()
+                             .topLeftCorner(rank, rank)
+                             .template triangularView<Eigen::Upper>()
+                             .solve(basis.transpose() * columns);
+      z = scaled.colsPermutation() * z;
+      for (int k = 0; k < kStart; ++k) {
+        z.row(k) *= Plant::start_scale(k);
+      }
+      return z;
     }
   };
 
@@ -161,6 +194,25 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     }
   }
 
+  // Window k with where its search begins.
+  Window begun(const Machine<double>& params, std::size_t k) const {
+    Window w = windows_[k];
+    if (found_[k].size() > 0 && std::memcmp(&params, &last_, sizeof(params)) == 0) {
+      w.start = found_[k];
+      return w;
+    }
+    for (std::size_t i = 0; i < followed_.size(); ++i) {
+      const double change = param(params, followed_[i]) - param(anchor_, followed_[i]);
+      w.start += change * follow_[k].col(static_cast<Eigen::Index>(i));
+    }
+    // Far away the straight line says nothing.
+    for (int i = 0; i < kStart; ++i) {
+      const double most = Plant::start_scale(i), here = windows_[k].start[i];
+      w.start[i] = std::min(std::max(w.start[i], here - most), here + most);
+    }
+    return w;
+  }
+
   // Simulates with derivatives against the initial state.
   void with_start(const Machine<StartJet>& params, const Window& w, const Eigen::VectorXd& start,
                   std::vector<StartJet>* jets, Eigen::VectorXd* residual, StartMatrix* by_start) const {
@@ -177,17 +229,16 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   }
 
   // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
-  Shot shoot(const Machine<double>& params, const Window& w) const {
+  Shot shoot(const Machine<double>& params, const Window& w, int most_steps = 12) const {
     using Normal = Eigen::Matrix<double, kStart, kStart>;
-    constexpr int kMostSteps = 12;
     const Machine<StartJet> cast_params = cast<StartJet>(params);
     std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
-    Shot shot{w.start, Eigen::VectorXd(w.rows), {}};
+    Shot shot{w.start, Eigen::VectorXd(w.rows), {}, {}};
     StartMatrix by_start(w.rows, kStart), tried_by_start(w.rows, kStart);
     Eigen::VectorXd tried_residual(w.rows);
     with_start(cast_params, w, shot.start, &jets, &shot.residual, &by_start);
     double damping = 1e-6;
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < most_steps; ++step) {
       // The damping is relative to the size of each number, so that one without a trace stays where it is.
       Normal normal = by_start.transpose() * by_start;
       const Eigen::Matrix<double, kStart, 1> gradient = by_start.transpose() * shot.residual;
@@ -221,10 +272,9 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     for (int k = 0; k < kStart; ++k) {
       scaled.col(k) *= Plant::start_scale(k);
     }
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-    qr.setThreshold(1e-9);
-    qr.compute(scaled);
-    shot.basis = qr.householderQ() * Eigen::MatrixXd::Identity(w.rows, qr.rank());
+    shot.scaled.setThreshold(1e-9);
+    shot.scaled.compute(scaled);
+    shot.basis = shot.scaled.householderQ() * Eigen::MatrixXd::Identity(w.rows, shot.scaled.rank());
     return shot;
   }
 
@@ -235,14 +285,16 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     if (shot.residual.squaredNorm() > 4.0 * w.rows) {
       Window anew = w;
       anew.start = plant_.guess(w.record, w.first);
-      Shot other = shoot(params, anew);
+      constexpr int kMostSteps = 4;  // enough to see whether it leads elsewhere; the next search goes on from there
+      Shot other = shoot(params, anew, kMostSteps);
       return other.residual.squaredNorm() < shot.residual.squaredNorm() ? other : shot;
     }
     return shot;
   }
 
-  void differentiate(const Machine<double>& params, const std::vector<int>& free, const Window& w, const Shot& shot,
-                     RowMatrix* jacobian) const {
+  // Returns how the best initial state moves with each parameter (kStart x free).
+  Eigen::MatrixXd differentiate(const Machine<double>& params, const std::vector<int>& free, const Window& w,
+                                const Shot& shot, RowMatrix* jacobian) const {
     std::vector<Jet> jets(static_cast<std::size_t>(w.rows));
     Eigen::MatrixXd columns(w.rows, kWidth);
     Jet start[kStart];
@@ -250,6 +302,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
       start[k] = Jet(shot.start[k]);
     }
     const int all = static_cast<int>(free.size());
+    Eigen::MatrixXd moves(kStart, all);
     for (int first = 0; first < all; first += kWidth) {
       const int width = std::min(kWidth, all - first);
       Machine<Jet> seeded = cast<Jet>(params);
@@ -260,8 +313,11 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
       for (int row = 0; row < w.rows; ++row) {
         columns.row(row) = jets[static_cast<std::size_t>(row)].v.transpose();
       }
-      jacobian->block(w.row, first, w.rows, width) = shot.off(Eigen::MatrixXd(columns.leftCols(width)));
+      const Eigen::MatrixXd here = columns.leftCols(width);
+      jacobian->block(w.row, first, w.rows, width) = shot.off(here);
+      moves.middleCols(first, width) = shot.move(here);
     }
+    return moves;
   }
 
   void differentiate_hidden(const Machine<double>& params, int knots, const Window& w, const Shot& shot,
@@ -292,7 +348,12 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   Plant plant_;
   WindowOptions options_;
   int rows_ = 0;
-  mutable std::vector<Window> windows_;  // a start is only where a search begins, not what it finds
+  // Where searches begin, which is not what they find.
+  mutable std::vector<Window> windows_;
+  mutable Machine<double> anchor_{}, last_{};    // parameters of the last Jacobian, of the last evaluation
+  mutable std::vector<int> followed_;            // parameters of the last Jacobian
+  mutable std::vector<Eigen::MatrixXd> follow_;  // how each window's start moves with them
+  mutable std::vector<Eigen::VectorXd> found_;   // by the last evaluation
 };
 
 }  // namespace estimation

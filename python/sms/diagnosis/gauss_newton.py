@@ -1,8 +1,9 @@
 """Least squares in few evaluations, for problems whose evaluation is a simulation of every window.
 
 Gauss-Newton with bounds: each step solves the linearised problem within the bounds exactly (bounded-variable least
-squares, Stark and Parker 1995), halves it while it does not help, and stops when a step gains next to nothing. The
-residuals are in units of the noise, so that "next to nothing" is a number: 0.5 of chi-square.
+squares, Stark and Parker 1995), shortens it while it does not help, and stops when it promises or gains next to
+nothing. The residuals are in units of the noise, so that is a number: 0.5 of chi-square, and more for a model
+that misses by far more than the noise, whose last digit nobody reads.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from sms.diagnosis.result import Array
 
 ENOUGH = 0.5
 """Of chi-square, which is about one a row: what a step has to gain to be followed by another."""
+LEAST_SHARE, MOST_SHARE = 1e-4, 1e-2
+"""Of chi-square itself, besides: from a model at the noise to one that misses by ten times its variance."""
 MOST_STEPS = 12
 MOST_HALVINGS = 3
 
@@ -92,21 +95,24 @@ def fit_windows(problem: Problem, initial: _core.Params, free: list[Free]) -> Wi
     converged = not free
     for _ in range(MOST_STEPS if free else 0):
         here = cost(residual, value)
-        step = _linear_step(
-            jacobian * scale, residual, pull, value - centre, lower - value, upper - value
-        )
+        little = ENOUGH + _share(here / len(residual)) * here
+        slope = jacobian * scale
+        step = _linear_step(slope, residual, pull, value - centre, lower - value, upper - value)
+        promised = here - cost(residual + slope @ step, value + step)
+        gained, length = 0.0, 1.0
         for _ in range(MOST_HALVINGS + 1):
-            tried = np.clip(value + step, lower, upper)
-            after, _ = problem.evaluate(at(tried))
-            there = cost(after, tried)
-            if there < here:
+            if promised * length * (2.0 - length) < little:
                 break
-            step = 0.4 * step
-        gained = here - there
+            tried = np.clip(value + length * step, lower, upper)
+            after, _ = problem.evaluate(at(tried))
+            gained = here - cost(after, tried)
+            if gained > 0.0:
+                break
+            length *= 0.4
         if gained > 0.0:
             value = tried
             residual, jacobian = problem.evaluate(at(value), names)
-        if gained < ENOUGH + 1e-4 * here:
+        if gained < little:
             converged = True
             break
     margin = 1e-6
@@ -115,6 +121,11 @@ def fit_windows(problem: Problem, initial: _core.Params, free: list[Free]) -> Wi
         for v, a, b in zip(value, lower, upper, strict=True)
     ]
     return WindowFit(at(value), np.asarray(residual), np.asarray(jacobian), held, converged)
+
+
+def _share(per_row: float) -> float:
+    """Of chi-square, what is next to nothing for a model that leaves so much a row."""
+    return min(max(LEAST_SHARE, 0.1 * MOST_SHARE * (per_row - 1.0)), MOST_SHARE)
 
 
 def _linear_step(

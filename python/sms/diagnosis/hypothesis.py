@@ -57,6 +57,8 @@ class Fitted:
     fit: Solution
     covariance: Array
     """(free, free), robust to correlation within blocks; zero rows for a parameter at its bound."""
+    columns: dict[str, Array] = field(default_factory=dict, repr=False, compare=False)
+    """Effect -> (rows,) change of the residual with it, as far as they have been worked out (visible.raw_columns)."""
 
     @property
     def params(self) -> _core.Params:

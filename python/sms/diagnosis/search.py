@@ -39,7 +39,7 @@ WORTH_A_FIT = 0.3
 """Of the chi-square that the most promising effect would take: what an effect must promise to be fitted."""
 ALIKE = 0.95
 """Cosine of two footprints in the data above which two effects cannot be told apart by them."""
-WORTH_A_LOOK = 0.5
+WORTH_A_LOOK = 0.8
 """Of the chi-square that the best fit takes: what a fit must take to be judged on unseen records."""
 
 

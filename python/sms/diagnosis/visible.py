@@ -46,8 +46,12 @@ def testable(
 
 
 def raw_columns(fitted: Fitted, comparison: Comparison | Runs, effects: Sequence[Effect]) -> Array:
+    """(rows, effects): change of the residual with each effect, on the records that were fitted; worked out once."""
+    new = [e for e in effects if e.key not in fitted.columns]
     table = fitted.hypothesis.table
-    return columns_of(comparison.problem, fitted.params, fitted.fit.residual, effects, table)
+    columns = columns_of(comparison.problem, fitted.params, fitted.fit.residual, new, table)
+    fitted.columns.update({e.key: columns[:, k] for k, e in enumerate(new)})
+    return np.column_stack([fitted.columns[e.key] for e in effects])
 
 
 def _reduced_columns(
