@@ -14,14 +14,14 @@ from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
 
-LEAST = 0.6
-"""Excess over the noise floor's mean square, over all channels, below which an error is not worth a word.
-
-Two honest descriptions of one machine differ by this much: the form in which friction rises from rest, the flow through
-a valve that is nearly closed. Smaller effects may be real, but are not told from that.
-"""
-LEAST_OF_ONE = 1.2
-"""The same for the channel that is worst off."""
+HONEST, HONEST_OF_ONE = 0.15, 0.25
+"""What two honest descriptions of one machine leave, over all channels and of the one that is worst off, as a share of
+the noise floor's mean square: the form in which friction rises from rest, the flow through a valve that is nearly
+closed, noise that lasts. Healthy machines of the trials leave 0.05 to 0.14, and 0.07 to 0.25."""
+LEAST, LEAST_OF_ONE = 0.3, 0.6
+"""The same, below which an error is not worth a word: about twice as much."""
+LEFT = 0.2
+"""Of the baseline's excess: with more left, the best explanation is none: it imitates, it does not explain."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,22 @@ class Excess:
     def worst(self) -> float:
         """Of the channel that is worst off, over all records."""
         return float(np.max((self.identify + self.validate) / 2.0))
+
+
+def small(excess: Excess) -> bool:
+    """Whether an error is not worth a word."""
+    return excess.total < LEAST and excess.worst < LEAST_OF_ONE
+
+
+def explained(before: Excess, after: Excess) -> bool:
+    """Whether hardly more is left than any honest description leaves."""
+    return after.total <= _bar(before.total, HONEST) and after.worst <= _bar(
+        before.worst, HONEST_OF_ONE
+    )
+
+
+def _bar(before: float, honest: float) -> float:
+    return honest + LEFT * max(before - honest, 0.0)
 
 
 def excess_of(fitted: Fitted, data: Data) -> Excess:

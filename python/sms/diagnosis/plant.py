@@ -16,7 +16,7 @@ from sms.diagnosis.catalogue import Effect, effects_of
 from sms.diagnosis.contradiction import Contradiction, contradiction, differ
 from sms.diagnosis.empirical import empirical_of
 from sms.diagnosis.evidence import candidates_of, cause_from, gains_on, value_of
-from sms.diagnosis.excess import LEAST, LEAST_OF_ONE, Excess, excess_of
+from sms.diagnosis.excess import Excess, excess_of, explained, small
 from sms.diagnosis.hypothesis import (
     Data,
     Fitted,
@@ -55,9 +55,6 @@ from sms.diagnosis.visible import testable
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
-
-LEFT = 0.2
-"""Of the baseline's excess: with more left, the best explanation is none: it imitates, it does not explain."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +128,7 @@ def investigate(
 
     def enough(fitted: Fitted) -> bool:
         left = excess_of(fitted, data)
-        return small(left) and (fitted is baseline or left.total < LEFT * before.total)
+        return small(left) and (fitted is baseline or explained(before, left))
 
     outcome = find_causes(
         baseline,
@@ -162,20 +159,11 @@ def _consistent(cause: Trial, final: Fitted, data: Data) -> bool:
     return not differ(list(each.values()), data.rig.declared(cause.effect.parameters[0]).value)
 
 
-def small(excess: Excess) -> bool:
-    """Whether an error is not worth a word."""
-    return excess.total < LEAST and excess.worst < LEAST_OF_ONE
-
-
 def decide(outcome: Outcome, before: Excess, after: Excess) -> Verdict:
     """One of the verdicts, data-fault aside."""
-    if after.total > max(LEFT * before.total, LEAST) or after.worst > max(
-        LEFT * before.worst, LEAST_OF_ONE
-    ):
-        return "unknown"
-    if not outcome.classes:
+    if small(before):
         return "no-evidence"
-    if after.total > LEFT * before.total:
+    if not outcome.classes or not explained(before, after):
         return "unknown"
     if len(outcome.classes) > 1:
         return "combination"
