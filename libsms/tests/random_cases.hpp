@@ -1,4 +1,4 @@
-// Random cases that can be repeated: the seed is printed by main.cpp and taken from --seed.
+// Random cases that can be repeated: main.cpp prints the seed, and takes it from --seed or SMS_TEST_SEED.
 #pragma once
 
 #include <random>

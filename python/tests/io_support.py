@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import secrets
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -33,13 +31,6 @@ file = "two.csv"
 role = "validate"
 """
 PLAIN_RIG = '[rig]\nkind = "cylinder"\n' + PARAMETERS + RECORDS
-
-
-def draw(name: str) -> np.random.Generator:
-    """A random generator whose seed is printed; SMS_TEST_SEED repeats a run."""
-    seed = int(os.environ.get("SMS_TEST_SEED", secrets.randbits(32)))
-    print(f"{name}: SMS_TEST_SEED={seed}")
-    return np.random.default_rng(seed)
 
 
 def healthy_signals(samples: int = 1200, gauge_pressure: float = 3e5) -> dict[str, Array]:

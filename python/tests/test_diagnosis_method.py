@@ -17,7 +17,7 @@ from sms.io.errors import InputError
 from sms.io.write import write_record
 from sms.parameters import PARAMETERS
 
-SEED = int(np.random.default_rng().integers(10**6))
+from validation.random_cases import draw
 
 RIG = """
 [rig]
@@ -47,7 +47,7 @@ def make_rig(
     folder: Path, bore_uncertainty: str = "0.001 mm", extra_force: float = 0.0, **truth: float
 ) -> Path:
     """Records of slow strokes whose forces come from the core with the parameters `truth`; noise 0.2 N."""
-    rng = np.random.default_rng(SEED)
+    rng = draw("method")
     known = {
         "bore_diameter": 0.025,
         "rod_diameter": 0.0,

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from io_support import draw
 from numpy.typing import NDArray
 from plant_support import write_bench
 from sms import _core
@@ -16,6 +15,8 @@ from sms.diagnosis.gauss_newton import Free, fit_windows
 from sms.diagnosis.localise import hats
 from sms.diagnosis.screening import Nuisance, project, screen
 from sms.io import InputError
+
+from validation.random_cases import draw
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 Array = NDArray[np.float64]

@@ -15,13 +15,12 @@ from sms.diagnosis.statistics import (
     weighted_ms,
 )
 
-SEED = int(np.random.default_rng().integers(10**6))
+from validation.random_cases import draw
 
 
 @pytest.fixture
 def rng() -> np.random.Generator:
-    print(f"seed {SEED}")
-    return np.random.default_rng(SEED)
+    return draw("statistics")
 
 
 def coloured(rng: np.random.Generator, n: int, correlation: float) -> np.ndarray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sms
-from io_support import draw
 from mechanism_support import (
     Array,
     cases,
@@ -16,6 +15,8 @@ from mechanism_support import (
     relative_difference,
     with_reference,
 )
+
+from validation.random_cases import draw
 
 LEVEL = (0.0, 0.0, 0.5)
 REST = (0.0, 0.0, 0.0)

@@ -14,8 +14,9 @@ import pytest
 import scipy.interpolate
 import scipy.io
 from ik_tables_support import READERS, STRICT_C, direct, made, parameters, read_npz, run
-from io_support import draw
 from sms import _core
+
+from validation.random_cases import draw
 
 ROOT = Path(__file__).resolve().parents[2]
 ENDINGS = tuple(READERS)

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from cantools.database import DecodeError
 from cantools.database.can import Message
-from io_support import draw
 from sms.io.can_decode import Payloads
 from sms.io.can_frames import lacks_value, load_dbc, no_value
+
+from validation.random_cases import draw
 
 ODD = cantools.database.load_string("""
 VERSION ""

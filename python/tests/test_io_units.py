@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from io_support import draw
 from sms.io import InputError
 from sms.io.units import (
     array_to_si,
@@ -15,6 +14,8 @@ from sms.io.units import (
     split_column_name,
     to_si,
 )
+
+from validation.random_cases import draw
 
 PAIRS = [
     ("mm", "m"),

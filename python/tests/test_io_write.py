@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from io_support import PLAIN_RIG, draw, healthy_signals, write_rig
+from io_support import PLAIN_RIG, healthy_signals, write_rig
 from sms.io import (
     Declaration,
     InputError,
@@ -18,6 +18,8 @@ from sms.io import (
     write_text_atomically,
 )
 from sms.parameters import PARAMETERS
+
+from validation.random_cases import draw
 
 
 def test_text_is_written_whole_into_a_new_folder(tmp_path: Path) -> None:

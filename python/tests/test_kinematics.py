@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sms
-from io_support import draw
 from mechanism_support import (
     ROOT,
     Array,
@@ -18,6 +17,8 @@ from mechanism_support import (
     random_poses,
     with_reference,
 )
+
+from validation.random_cases import draw
 
 LEVEL = (0.0, 0.0, 0.5)
 

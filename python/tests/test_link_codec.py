@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import can
 import pytest
-from io_support import draw
 from sms.io import InputError
 from sms.link import codec
 from sms.link.codec import (
@@ -17,6 +16,8 @@ from sms.link.codec import (
     decode,
     sent_by,
 )
+
+from validation.random_cases import draw
 
 LEVEL = {"roll_setpoint": 0.01, "pitch_setpoint": -0.02, "height_setpoint": 0.5}
 

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from io_support import draw
 from sms.io import InputError
 from sms.link.motion import MID_HEIGHT, check_motion, read_motion
+
+from validation.random_cases import draw
 
 CSV = "time [s],Roll [deg],pitch [rad],heave [mm]\n5,0,0,0\n6,1,0.01,10\n7,2,0.02,-20\n"
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sms
-from io_support import draw
 from numpy.typing import NDArray
 from scipy.signal import welch
 from sms.io import InputError, write_table
@@ -37,6 +36,8 @@ from sms.motion import (
 )
 from sms.motion.sea import response
 from sms.workspace_survey import DEGREE
+
+from validation.random_cases import draw
 
 CHIRP = Path(__file__).parents[2] / "../shared/reference/components/chirp.json"
 

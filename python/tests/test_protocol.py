@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import random
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,10 +14,10 @@ from cantools.database.can import Message, Signal
 from sms import _core
 
 from validation.generate_frames import DBC, is_physical
+from validation.random_cases import SEED
 
 DATABASE = cantools.database.load_file(DBC)
 MESSAGES: list[Message] = list(DATABASE.messages)  # type: ignore[union-attr]
-SEED = int(os.environ.get("SMS_TEST_SEED", "0")) or random.randrange(2**32)
 LARGEST_32 = 3.4028234663852886e38
 
 

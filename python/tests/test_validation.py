@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import secrets
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,15 +19,15 @@ from sms.validation.open_loop import rise_time
 from sms.validation.runs import crossing, response_at, run
 from sms.validation.steps import step_of
 
+from validation.random_cases import draw
+
 KEYS = ["experiment", "quantity", "published", "computed", "unit", "agrees", "remark"]
 LIGHT = "round trip", "dead band", "simplified plant", "appendix E", "velocity per volt"
 
 
 @pytest.fixture
 def random() -> np.random.Generator:
-    seed = secrets.randbits(32)
-    print(f"seed {seed}")
-    return np.random.default_rng(seed)
+    return draw("validation")
 
 
 @pytest.fixture(scope="module")

@@ -9,13 +9,14 @@ import re
 import numpy as np
 import pytest
 import sms
-from io_support import draw
 from mechanism_support import random_poses
 from plotly.offline import get_plotlyjs
 from sms import workspace
 from sms.report.workspace import workspace_html
 from sms.workspace_findings import findings, to_dict
 from sms.workspace_survey import Survey, survey
+
+from validation.random_cases import draw
 
 DEGREE = math.pi / 180.0
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,7 @@ from validation.multibody.comparison import Difference, ask, core_answer, differ
 from validation.multibody.environment import ROOT, PeersUnavailableError, peer_python
 from validation.multibody.mechanism import mechanism_of
 from validation.multibody.questions import drawn_machine, questions
+from validation.random_cases import SEED
 
 SHARED = Path(os.environ.get("SMS_SHARED", ROOT.parent / "shared"))
 REFERENCE = SHARED / "reference" / "dynamics.json"
@@ -32,9 +32,8 @@ def python() -> Path:
 
 @pytest.fixture
 def seed() -> int:
-    value = int(os.environ.get("SMS_TEST_SEED", secrets.randbits(32)))
-    print(f"SMS_TEST_SEED={value}")
-    return value
+    print(f"SMS_TEST_SEED={SEED}")
+    return SEED
 
 
 @pytest.mark.full

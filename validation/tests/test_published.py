@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 from collections.abc import Mapping
 
 import numpy as np
@@ -19,6 +18,7 @@ from validation.published import actuator, state_feedback, what_is_missing
 from validation.published.candidates import ACTUATOR as ACTUATOR_CANDIDATES
 from validation.published.candidates import STATE_FEEDBACK, Candidate
 from validation.published.state_feedback import Outcome
+from validation.random_cases import draw
 
 
 @pytest.mark.parametrize("candidate", [*STATE_FEEDBACK, *ACTUATOR_CANDIDATES], ids=lambda c: c.name)
@@ -35,9 +35,7 @@ def test_a_candidate_stays_within_the_bounds_of_its_parameters(candidate: Candid
 
 def test_search_finds_the_best_value_of_a_candidate(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a made-up outcome that is perfect at one K_v."""
-    seed = secrets.randbits(32)
-    print(f"seed {seed}")
-    best = float(np.random.default_rng(seed).uniform(0.5, 20.0))
+    best = float(draw("search").uniform(0.5, 20.0))
 
     def outcome(settings: Mapping[str, float], complete: bool = True) -> Outcome:
         off = abs(np.log(settings["velocity_gain"] / best))

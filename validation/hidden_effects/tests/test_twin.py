@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from validation import random_cases
 from validation.hidden_effects import detection, effects
 from validation.hidden_effects.cylinder_twin import (
     Array,
@@ -47,9 +48,7 @@ KNOWN_EXACTLY = Uncertainty(0.0, 0.0, 0.0)
 
 @pytest.fixture(scope="module")
 def rng() -> np.random.Generator:
-    seed = int(np.random.default_rng().integers(2**32))
-    print(f"seed {seed}")
-    return np.random.default_rng(seed)
+    return random_cases.draw("twin")
 
 
 @pytest.fixture(scope="module")

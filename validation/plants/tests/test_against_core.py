@@ -10,6 +10,7 @@ import sms
 from sms import Params, _core
 from sms.simulation import Run
 
+from validation import random_cases
 from validation.multibody.mechanism import mechanism_of
 from validation.plants import bench, platform, tank
 from validation.plants.actuator import Laws, valve_flows
@@ -42,9 +43,7 @@ EVERYTHING = {
 
 @pytest.fixture(scope="module")
 def rng() -> np.random.Generator:
-    seed = int(np.random.default_rng().integers(2**32))
-    print(f"seed {seed}")
-    return np.random.default_rng(seed)
+    return random_cases.draw("plants")
 
 
 def published_sine(duration: float, period: float) -> Array:

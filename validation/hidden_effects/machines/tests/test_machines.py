@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from validation import random_cases
 from validation.hidden_effects.machines import effects, limits, scoring
 from validation.hidden_effects.machines.__main__ import main
 from validation.hidden_effects.machines.air import Array
@@ -36,9 +37,7 @@ EVERY_RIG = [*QUICK, pytest.param("platform", marks=pytest.mark.full)]
 
 @pytest.fixture(scope="module")
 def rng() -> np.random.Generator:
-    seed = int(np.random.default_rng().integers(2**32))
-    print(f"seed {seed}")
-    return np.random.default_rng(seed)
+    return random_cases.draw("machines")
 
 
 def files(folder: Path) -> dict[str, bytes]:
