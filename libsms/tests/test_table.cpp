@@ -2,6 +2,7 @@
 // between.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -104,14 +105,27 @@ double error_of(const Lookup& lookup, const OwningTable<double>& t, Random& rand
   return error;
 }
 
+// By how much of a cell a lookup at a node may miss it. The node, v, and both ends of the axis are rounded by half an
+// epsilon of their magnitude, and so is the step's reciprocal by that of its own ends: three halves over the range. What
+// remains, (v - lower) times the reciprocal, is rounded in proportion.
+template <typename S>
+double missed_cells(const sms::TableAxis<S>& a) {
+  if (a.count == 1) return 0.0;
+  const double range = double(a.upper) - double(a.lower);
+  const double magnitude = std::max(std::abs(double(a.lower)), std::abs(double(a.upper)));
+  return double(std::numeric_limits<S>::epsilon()) * (a.count - 1) * (1.5 * magnitude / range + 3.0);
+}
+
 template <typename S>
 void check_nodes(Random& random) {
   const auto noise = [&random](const Vec&) { return random_vector(random, -1.0, 1.0); };
   const OwningTable<S> flat(random_axis<S>(random), random_axis<S>(random), axis<S>(1, 0.5, 0.5), noise);
   const OwningTable<S> deep(random_axis<S>(random), random_axis<S>(random), random_axis<S>(random), noise);
-  const double rounding = 100.0 * double(std::numeric_limits<S>::epsilon());
   for (const OwningTable<S>* t : {&flat, &deep}) {
     const sms::Table<S>& table = t->table;
+    // Between nodes within +-1 no interpolation is steeper than the parabola at an edge: (3 + 4 + 1) / 2 a cell.
+    const double missed = missed_cells(table.roll) + missed_cells(table.pitch) + missed_cells(table.height);
+    const double rounding = 4.0 * missed + 30.0 * double(std::numeric_limits<S>::epsilon());
     const S* number = t->numbers.data();
     for (int i = 0; i < table.roll.count; ++i) {
       for (int k = 0; k < table.pitch.count; ++k) {
