@@ -1,6 +1,7 @@
 #include "estimation/platform_plant.hpp"
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -34,7 +35,7 @@ void check(const PlatformRecord& record, std::size_t number) {
 // Value and slope of every sample, by a parabola through those around it.
 MeasuredMotion smoothed(const PlatformRecord& record) {
   const int samples = static_cast<int>(record.extension[0].size());
-  const int half = std::max(2, static_cast<int>(kSmooth / record.step + 0.5));
+  const int half = std::max(2, static_cast<int>(std::lround(kSmooth / record.step)));
   const int count = std::min(samples, 2 * half + 1);
   MeasuredMotion motion;
   for (int k = 0; k < samples; ++k) {

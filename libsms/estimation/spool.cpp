@@ -76,7 +76,7 @@ S* residuals_of(const Params<S>& p, const SpoolRecord& record, SpoolLaw law, S* 
 }  // namespace
 
 int SpoolProblem::first_compared(const SpoolRecord& record) {
-  return std::min(static_cast<int>(record.command.size()) / 2, static_cast<int>(kRunUp / record.step + 0.5));
+  return std::min(static_cast<int>(record.command.size()) / 2, static_cast<int>(std::lround(kRunUp / record.step)));
 }
 
 SpoolProblem::SpoolProblem(std::vector<SpoolRecord> records, SpoolLaw law) : records_(std::move(records)), law_(law) {

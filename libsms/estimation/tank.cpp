@@ -83,7 +83,7 @@ bool has_settled(const Node<S>& node, double dt) {
 // The cubic through the values and rates at both ends of a step of size h.
 template <typename S>
 struct Cubic {
-  S c0, c1, c2, c3;
+  S c0{}, c1{}, c2{}, c3{};
 
   Cubic() = default;
   Cubic(const S& value_a, const S& rate_a, const S& value_b, const S& rate_b, const S& h) : c0(value_a), c1(rate_a) {

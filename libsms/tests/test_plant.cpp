@@ -37,11 +37,13 @@ ActuatorLaws laws(sms::ChamberLaw chamber, sms::FrictionLaw friction = sms::Fric
 // The bench under a valve command that never rests.
 double wave(double t) { return 5.0 + 1.1 * std::sin(9.0 * t) + 0.4 * std::cos(31.0 * t); }
 
+int milliseconds(double seconds) { return static_cast<int>(std::lround(1e3 * seconds)); }
+
 // `seconds` of a bench with a held command every millisecond.
 template <typename Step>
 BenchState run_bench(const Bench& bench, double seconds, const Step& step) {
   BenchState state = sms::bench_at_rest(bench, 0.2, 0.0, 333e3);
-  for (int k = 0; k < static_cast<int>(1e3 * seconds + 0.5); ++k) {
+  for (int k = 0; k < milliseconds(seconds); ++k) {
     REQUIRE(step(sms::BenchInput<double>{wave(1e-3 * k), 0.0}, state) == SMS_OK);
   }
   return state;
@@ -72,7 +74,7 @@ std::unique_ptr<sms::Simulation<Bench>> simulation(const Bench& bench, sms::Posi
 BenchState run_adaptive(const Bench& bench, double seconds, double tolerance) {
   const auto s = simulation(bench, sms::PositionControl::open_loop, false, tolerance);
   const double noise = 0.0;
-  for (int k = 0; k < static_cast<int>(1e3 * seconds + 0.5); ++k) {
+  for (int k = 0; k < milliseconds(seconds); ++k) {
     const double command = wave(1e-3 * k);
     REQUIRE(sms::take_sample(bench.params, &command, &noise, *s) == SMS_OK);
     REQUIRE(sms::run_period(*s) == SMS_OK);

@@ -63,13 +63,13 @@ template <typename S>
 S friction_ramp(const Params<S>& p, const S& velocity) {
   using std::abs;
   using std::exp;
-  const S sine = friction_ramp(velocity, p.stiction_velocity);
-  if (is_absent(p.stiction_shape)) {
-    return sine;
+  S ramp = friction_ramp(velocity, p.stiction_velocity);
+  if (!is_absent(p.stiction_shape)) {
+    const S x = S(3.1415926535897932) * velocity / p.stiction_velocity;
+    const S tangent = abs(x) < S(20) ? S(S(1) - S(2) / (exp(x) + S(1))) : (x < S(0) ? S(-1) : S(1));
+    ramp += p.stiction_shape * (tangent - ramp);
   }
-  const S x = S(3.1415926535897932) * velocity / p.stiction_velocity;
-  const S tangent = abs(x) < S(20) ? S(S(1) - S(2) / (exp(x) + S(1))) : (x < S(0) ? S(-1) : S(1));
-  return sine + p.stiction_shape * (tangent - sine);
+  return ramp;
 }
 
 // |v / width|^delta, held at 1000 from a million widths on: with delta >= 0.5 (its bound) it is no less there, and exp

@@ -18,8 +18,8 @@
 // Kinks. Where the equations change their branch (the ends of the stroke, a reversal, the dead zone of the valve) no
 // smooth method keeps its order. A plant names functions of its state that change sign there (`switches`). A step over
 // such a place is taken again, shortened to where the straight line between both ends says it lies, which is so beside
-// it by the square of the step; what follows is a new step with new stages. A command that jumps is no kink: a step never passes the time it is told, and
-// renew_command() gives the first stage of the next from the last of this one.
+// it by the square of the step; what follows is a new step with new stages. A command that jumps is no kink: a step
+// never passes the time it is told, and renew_command() gives the first stage of the next from the last of this one.
 //
 // The plant is wrapped in a System:
 //
@@ -31,6 +31,7 @@
 #include <limits>
 
 #include "sms/integrate.hpp"
+#include "sms/limit.hpp"
 
 namespace sms {
 
@@ -155,6 +156,33 @@ S first_switch(const S (&before)[n], const S (&after)[n]) {
   return first;
 }
 
+// How the size of a step changes after an error, over its tolerance, and the one before it.
+template <typename S>
+S growth(const S& error, const S& error_before) {
+  using std::pow;
+  return limited<S>(S(0.9) * pow(error, S(-0.18)) * pow(error_before, S(0.1)), S(0.2), S(5));
+}
+
+// How a step that failed is shortened. Its error may be no number.
+template <typename S>
+S shrinking(const S& error) {
+  using std::pow;
+  const S shrink = error < S(1e6) ? S(0.9) * pow(error, S(-0.25)) : S(0.1);
+  return shrink > S(0.1) ? shrink : S(0.1);
+}
+
+// Chooses the next step after one of size h. What was left before the end, `last`, may be short and says nothing.
+template <typename State>
+void choose_next(const typename State::Scalar& h, bool last, const typename State::Scalar& error, Run<State>& run) {
+  using S = typename State::Scalar;
+  const S seen = error > S(1e-4) ? error : S(1e-4);
+  const S wanted = h * growth<S>(seen, run.last_error);
+  if (!last || wanted > run.next) {
+    run.next = wanted;
+    run.last_error = seen;
+  }
+}
+
 template <typename State>
 void accept_step(const Attempt<State>& a, const typename State::Scalar& end, Run<State>& run) {
   run.began = run.time;
@@ -172,48 +200,40 @@ template <typename State, typename System>
 sms_status adaptive_step(System& f, const StepControl<State>& control, const typename State::Scalar& end,
                          Run<State>& run) {
   using S = typename State::Scalar;
-  using std::pow;
-  constexpr int kSwitches = System::switch_count;
-  S before[kSwitches], after[kSwitches];
+  S before[System::switch_count], after[System::switch_count];
   f.switches(run.state, before);
   Attempt<State> a;
   S h = run.next < control.largest ? run.next : control.largest;
   bool shortened = false;  // by a switch: the size says nothing about the next
   sms_status ahead = SMS_NOT_CONVERGED;
   for (;;) {
-    const bool whole = run.time + h * (S(1) + S(1e-6)) >= end;
-    h = whole ? end - run.time : h;
+    const bool last = run.time + h * (S(1) + S(1e-6)) >= end;
+    h = last ? end - run.time : h;
     const sms_status status = attempt_step(f, control, run, h, a);
     run.evaluations += 4;
-    if (status == SMS_OK && a.error <= S(1)) {
+    if (status != SMS_OK || !(a.error <= S(1))) {
+      ++run.rejected;
+      ahead = status == SMS_OK ? ahead : status;
+      h *= status == SMS_OK ? shrinking(a.error) : S(0.1);
+      run.next = h;
+      if (h < control.smallest) {
+        return ahead;
+      }
+      continue;
+    }
+    if (!shortened) {
       f.switches(a.end, after);
       const S part = first_switch(before, after);
-      if (part < S(0.999) && part * h > S(1e-3) * h && part * h > control.smallest && !shortened) {
-        h *= part;
-        shortened = true;
+      shortened = part < S(0.999) && part > S(1e-3) && part * h > control.smallest;
+      if (shortened) {
         ++run.rejected;
+        h *= part;
         continue;
       }
-      const S error = a.error > S(1e-4) ? a.error : S(1e-4);
-      if (!shortened) {
-        const S grow = S(0.9) * pow(error, S(-0.18)) * pow(run.last_error, S(0.1));
-        const S wanted = h * (grow < S(0.2) ? S(0.2) : (grow > S(5) ? S(5) : grow));
-        if (!whole || wanted > run.next) {  // what is left before `end` may be short, and says nothing
-          run.next = wanted;
-          run.last_error = error;
-        }
-      }
-      accept_step<State>(a, whole ? end : run.time + h, run);
-      return SMS_OK;
+      choose_next(h, last, a.error, run);
     }
-    ++run.rejected;
-    ahead = status == SMS_OK ? ahead : status;
-    const S shrink = status == SMS_OK && a.error < S(1e6) ? S(0.9) * pow(a.error, S(-0.25)) : S(0.1);
-    h *= shrink > S(0.1) ? shrink : S(0.1);
-    run.next = h;
-    if (h < control.smallest) {
-      return ahead;
-    }
+    accept_step<State>(a, last ? end : run.time + h, run);
+    return SMS_OK;
   }
 }
 
