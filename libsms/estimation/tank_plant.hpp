@@ -5,11 +5,12 @@
 // Without heat the temperature is that of the supplied air, and the thermometer sees that. The spool follows the command
 // alone and is run up over the 50 ms before the window.
 //
-// The step is that of bench_plant.hpp (ROS2), with the flow over its pressure difference as the slope of each pressure
+// The step is that of actuator_step.hpp (ROS2), with the flow over its pressure difference as the slope of each pressure
 // and the exchange of its air as that of the temperature: a small tank behind an open valve is stiff, and so is a
 // reservoir behind a short line.
 #pragma once
 
+#include "estimation/actuator_step.hpp"
 #include "estimation/recorded.hpp"
 #include "estimation/shooting.hpp"
 #include "sms/integrate.hpp"
@@ -78,6 +79,41 @@ class TankPlant {
   double longest_step_;
 };
 
+namespace detail {
+
+// A of the step.
+template <typename S>
+struct TankStiffness {
+  S pressure;     // d p'/d p
+  S temperature;  // d T'/d T
+  S reservoir;    // d p_R'/d p_R
+};
+
+template <typename S>
+TankStiffness<S> tank_stiffness(const Params<S>& p, const TankState<S>& state, const TankTerms<S>& t) {
+  const S of_air = p.gas_constant * p.air_temperature, stiff_air = p.heat_capacity_ratio * of_air;
+  const S feed = secant<S>(t.feed, state.supply_pressure, t.air.pressure);
+  const S vent = secant<S>(t.vent, t.air.pressure, p.ambient_pressure);
+  const S thin = t.air.pressure > S(1e3) ? t.air.pressure : S(1e3);  // a bad guess may have emptied the tank
+  TankStiffness<S> s;
+  s.pressure = -(stiff_air / t.space.volume * (feed + vent));
+  s.temperature = -(of_air * (t.flow.in + t.flow.out) / (thin * t.space.volume));
+  s.reservoir = p.supply_line_resistance > S(0)
+                    ? S(-(stiff_air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed)))
+                    : S(0);
+  return s;
+}
+
+// k with (I - g A) k = rate
+template <typename S>
+void solve_stiff(const TankStiffness<S>& s, const S& g, TankState<S>& rate) {
+  rate.gas.pressure /= S(1) - g * s.pressure;
+  rate.gas.temperature /= S(1) - g * s.temperature;
+  rate.supply_pressure /= S(1) - g * s.reservoir;
+}
+
+}  // namespace detail
+
 template <typename S>
 S* TankPlant::readings(const Params<S>& p, const TankPlantRecord& record, int sample, const TankState<S>& state,
                        const TankState<S>& rate, const S& pressure, const S& temperature, S* out) const {
@@ -120,18 +156,7 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   TankState<S> state = tank_at_rest<S>(p, start[0]);
   state.gas.temperature = warm ? start[1] : p.air_temperature;
   state.supply_pressure = droops ? start[2] : head;
-
-  // The spool: 50 ms of the command before the window.
-  const int run_up = static_cast<int>(0.05 / value_of(h)) + 1;
-  Lag<S> spool{detail::command_at<S>(record.command, S(window.first - double(run_up) / steps) - late), S(0)};
-  for (int i = -run_up; i < 0; ++i) {
-    const S at = S(window.first + double(i) / steps) - late;
-    const Lag<S> k1 = spool_rate(p, spool, detail::command_at<S>(record.command, at));
-    const Lag<S> moved{spool.value + h * k1.value, spool.rate + h * k1.rate};
-    const Lag<S> k2 = spool_rate(p, moved, detail::command_at<S>(record.command, at + S(1.0 / steps)));
-    spool = {spool.value + S(0.5) * h * (k1.value + k2.value), spool.rate + S(0.5) * h * (k1.rate + k2.rate)};
-  }
-  state.spool = spool;
+  state.spool = detail::spool_at<S>(p, record.command, window.first, steps, h, late);
 
   TankTerms<S> t;
   TankState<S> k1, k2, moved;
@@ -149,8 +174,7 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   detail::FollowingSensor<S> gauge(p.sensor_lag_tank_pressure, h), couple(p.thermocouple_time_constant, h);
   couple.reading = warm ? start[3] : p.air_temperature;
 
-  const S g = S(0.29289321881345254) * h;
-  const S air = p.heat_capacity_ratio * p.gas_constant * p.air_temperature;
+  const S g = S(detail::kStiffShare) * h;
   for (int k = 0;; ++k) {
     rates(k, state, k1);
     if (k == 0) {
@@ -165,24 +189,13 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
       if (i > 0) {
         rates(k + double(i) / steps, state, k1);
       }
-      const S feed = detail::secant<S>(t.feed, state.supply_pressure, t.air.pressure);
-      const S vent = detail::secant<S>(t.vent, t.air.pressure, p.ambient_pressure);
-      const S of_tank = S(1) + g * air / t.space.volume * (feed + vent);
-      const S of_reservoir =
-          droops ? S(S(1) + g * air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed)) : S(1);
-      const S thin = t.air.pressure > S(1e3) ? t.air.pressure : S(1e3);  // a bad guess may have emptied the tank
-      const S of_heat =
-          S(1) + g * p.gas_constant * p.air_temperature * (t.flow.in + t.flow.out) / (thin * t.space.volume);
-      k1.gas.pressure /= of_tank;
-      k1.gas.temperature /= of_heat;
-      k1.supply_pressure /= of_reservoir;
+      const auto stiffness = detail::tank_stiffness<S>(p, state, t);
+      detail::solve_stiff<S>(stiffness, g, k1);
       const Gas<S> before = tank_air(tank, state.gas);
       vector_of(moved) = vector_of(state) + h * vector_of(k1);
       rates(k + double(i + 1) / steps, moved, k2);
       vector_of(k2) -= S(2) * vector_of(k1);
-      k2.gas.pressure /= of_tank;
-      k2.gas.temperature /= of_heat;
-      k2.supply_pressure /= of_reservoir;
+      detail::solve_stiff<S>(stiffness, g, k2);
       vector_of(state) += (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
       const Gas<S> after = tank_air(tank, state.gas);
       gauge.step(before.pressure, after.pressure);
