@@ -61,7 +61,8 @@ def flow_html(result: FlowResult) -> str:
             figure("profiles", "How sharply the data speak", figures["profiles"],
                    "How much worse the fit becomes when one parameter is held and all others are "
                    "fitted again, in units in which 3.84 is the 95 % limit. A curve that stays below "
-                   "it on one side leaves the parameter open there.", "low"),
+                   "it on one side leaves the parameter open there. The interval of C in the list is wider: it "
+                   "holds what is known within limits only, too.", "low"),
             figure("correlation", "What replaces what", figures["correlation"],
                    "Correlation of the estimates of one record.", ""),
             section("records", "Every record", _records_table(result)),
@@ -164,15 +165,21 @@ def _profile_views(f: FlowFit) -> list[dict[str, Any]]:
         limit = np.full(2, LIMIT_95)
         scale, unit = (C_SCALE, " [l/s per bar]") if name == COMPONENT[0] else (1.0, "")
         value = scale * curve.value
+        fine = np.linspace(value[0], value[-1], 200)
+        root = np.sqrt(curve.rise) * np.sign(curve.value - f.known[name].value)  # nearly straight
         ends = [value[0], value[-1]]
         traces = [
-            trace(value, np.minimum(curve.rise, 40.0), SYMBOL[name], "extended",
-                  "lines+markers"),
+            trace(fine, np.interp(fine, value, root) ** 2, SYMBOL[name], "extended"),
+            trace(value, curve.rise, "", "extended", "markers"),
             trace(ends, limit, "95 %", "warn", dash="dot"),
         ]  # fmt: skip
         label = f"{f.record.name}: {f.known[name].verdict}"
         views.append(
-            view(label, SYMBOL[name] + unit, [panel("rise of the cost", traces, from_zero=True)])
+            view(
+                label,
+                SYMBOL[name] + unit,
+                [panel("rise of the cost", traces, range=[0.0, 4.0 * LIMIT_95])],
+            )
         )
     return views
 
@@ -204,7 +211,7 @@ def _records_table(result: FlowResult) -> str:
 
 def _interval(f: FlowFit, name: str) -> str:
     k = f.known[name]
-    span = f"{k.lower:.2g} to {k.upper:.2g}"
+    span = f"{k.lower:.3g} to {k.upper:.3g}".replace(" ", "\N{NO-BREAK SPACE}")
     return f"{k.value:.3g} ({span})" if k.identifiable else f"not identifiable ({span})"
 
 

@@ -39,7 +39,7 @@ def friction_html(result: FrictionResult) -> str:
         "map": [_map_view(result, m) for m in result.motions],
         "correlation": [
             correlation_view(EQUATION[f.law], [words(x.name) for x in f.found.free], f.found.correlation)
-            for f in result.laws
+            for f in sorted(result.laws, key=lambda f: f.law != result.best)
         ],
     }  # fmt: skip
     runs = _runs_view(result)

@@ -31,8 +31,14 @@
   function map(panel) {
     return [{ type: "heatmap", x: panel.names, y: panel.names, z: panel.values, zmin: -1, zmax: 1, xgap: 2, ygap: 2,
       colorscale: [[0, "#d55e00"], [0.5, dark.matches ? "#2a3036" : "#f4f4f2"], [1, "#0072b2"]],
-      text: panel.values.map((row) => row.map((v) => v === null ? "at bound" : v.toFixed(2))),
+      text: panel.values.map((row) => row.map((v) => v === null ? "at bound" : v.toFixed(2).replace("-0.00", "0.00"))),
       texttemplate: "%{text}", hovertemplate: "%{y} with %{x}: %{z:.3f}<extra></extra>", colorbar: { thickness: 10 } }];
+  }
+
+  // Whether every name of the legend stands for dots, which are too small there as they are drawn.
+  function dots(view) {
+    const named = (view.panels || []).flatMap((panel) => panel.traces.filter((trace) => trace.name));
+    return named.every((trace) => trace.mode === "markers");
   }
 
   function layout(view) {
@@ -41,7 +47,7 @@
       margin: { l: 64, r: 12, t: 12, b: 44 }, dragmode: touch ? false : "zoom",
       modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("quiet"), activecolor: colour("ink") },
       hoverlabel: { bgcolor: colour("surface"), bordercolor: colour("line"), font: { color: colour("ink") } },
-      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 } };
+      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, itemsizing: dots(view) ? "constant" : "trace" } };
     if (view.names) {
       return Object.assign(out, { margin: { l: 64, r: 12, t: 36, b: 44 }, xaxis: axis("", { tickangle: -30 }), yaxis: axis("", { autorange: "reversed" }) });
     }
@@ -54,7 +60,7 @@
     view.panels.forEach((panel, i) => {
       const bottom = Math.max(top - heights[i] / sum * (1 - gap * (count - 1)), 0);
       const more = { domain: [bottom, top], rangemode: panel.from_zero ? "tozero" : "normal" };
-      if (panel.log) more.type = "log";
+      if (panel.log) Object.assign(more, { type: "log", exponentformat: "none", dtick: "D2" });
       if (panel.range) more.range = panel.range;
       out[`yaxis${i ? i + 1 : ""}`] = axis(panel.title, more);
       top = bottom - gap;
