@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace sms {
 namespace estimation {
@@ -55,49 +56,78 @@ struct Aim {
   const Eigen::VectorXd& weight;
   double huber;
   Eigen::VectorXd scale;  // the solver's x_k is scale_k times the parameter
+
+  Eigen::VectorXd value_at(const Eigen::VectorXd& x) const { return x.cwiseQuotient(scale); }
 };
 
-// The whole problem as one block of residuals, the pulls last.
+// The problem's answer, not weighted, at the solver's x.
+struct Answer {
+  Eigen::VectorXd x;
+  Eigen::VectorXd residual;
+  RowMatrix jacobian;
+};
+
+// The whole problem as one block of residuals, the pulls last. The last answer with derivatives is kept: the solver asks
+// for that of the start, which its scaling needed before it, and the fit for that of the end.
 class Residuals : public ceres::CostFunction {
  public:
-  explicit Residuals(const Aim& aim) : aim_(aim), indices_(indices(aim.free)) {
+  Residuals(const Aim& aim, Answer start) : aim_(aim), indices_(indices(aim.free)), last_(std::move(start)) {
     set_num_residuals(aim.problem.rows() + static_cast<int>(aim.free.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(aim.free.size()));
   }
 
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    const bool want = jacobians != nullptr && jacobians[0] != nullptr;
-    const Eigen::Index rows = aim_.problem.rows(), columns = aim_.scale.size();
-    const Eigen::VectorXd value = Eigen::Map<const Eigen::VectorXd>(x[0], columns).cwiseQuotient(aim_.scale);
-    Eigen::VectorXd residual;
-    RowMatrix jacobian;
-    aim_.problem.evaluate(with_values(aim_.start, aim_.free, value), indices_, &residual, want ? &jacobian : nullptr);
+    const Eigen::Map<const Eigen::VectorXd> at(x[0], aim_.scale.size());
+    if (jacobians == nullptr || jacobians[0] == nullptr) {
+      Eigen::VectorXd residual;
+      aim_.problem.evaluate(params_at(at), indices_, &residual, nullptr);
+      return weighted(at, residual, nullptr, residuals, nullptr);
+    }
+    const Answer& answer = answer_at(at);
+    return weighted(at, answer.residual, &answer.jacobian, residuals, jacobians[0]);
+  }
+
+  const Answer& answer_at(const Eigen::VectorXd& x) const {
+    if (!aim_.problem.repeats() || x != last_.x) {
+      last_.x = x;
+      aim_.problem.evaluate(params_at(x), indices_, &last_.residual, &last_.jacobian);
+    }
+    return last_;
+  }
+
+ private:
+  Params<double> params_at(const Eigen::VectorXd& x) const {
+    return with_values(aim_.start, aim_.free, aim_.value_at(x));
+  }
+
+  // Writes what the solver squares, and the derivatives if `jacobian` is there; whether all of it is finite.
+  bool weighted(const Eigen::VectorXd& x, const Eigen::VectorXd& residual, const RowMatrix* jacobian, double* residuals,
+                double* jacobians) const {
+    const Eigen::Index rows = residual.size(), columns = x.size();
+    const Eigen::RowVectorXd per_x = aim_.scale.cwiseInverse().transpose();
+    Eigen::Map<RowMatrix> all(jacobians, jacobian != nullptr ? num_residuals() : 0, columns);
     for (Eigen::Index i = 0; i < rows; ++i) {
       const Softened soft = soften(aim_.weight[i] * residual[i], aim_.huber);
       residuals[i] = soft.value;
-      if (want) {
-        jacobian.row(i) *= aim_.weight[i] * soft.slope;
+      if (jacobian != nullptr) {
+        all.row(i) = (aim_.weight[i] * soft.slope * jacobian->row(i)).cwiseProduct(per_x);
       }
     }
-    const Eigen::VectorXd from_start = value - values_of(aim_.start, aim_.free);
-    for (std::size_t k = 0; k < aim_.free.size(); ++k) {
-      residuals[rows + static_cast<Eigen::Index>(k)] = aim_.free[k].pull * from_start[static_cast<Eigen::Index>(k)];
-    }
-    if (want) {
-      Eigen::Map<RowMatrix> all(jacobians[0], num_residuals(), columns);
-      all.topRows(rows) = jacobian * aim_.scale.cwiseInverse().asDiagonal();
-      all.bottomRows(columns).setZero();
-      for (std::size_t k = 0; k < aim_.free.size(); ++k) {
-        const auto i = static_cast<Eigen::Index>(k);
-        all(rows + i, i) = aim_.free[k].pull / aim_.scale[i];
+    const Eigen::VectorXd from_start = aim_.value_at(x) - values_of(aim_.start, aim_.free);
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const double pull = aim_.free[static_cast<std::size_t>(k)].pull;
+      residuals[rows + k] = pull * from_start[k];
+      if (jacobian != nullptr) {
+        all.row(rows + k).setZero();
+        all(rows + k, k) = pull / aim_.scale[k];
       }
     }
     return residual.allFinite();
   }
 
- private:
   const Aim& aim_;
   std::vector<int> indices_;
+  mutable Answer last_;
 };
 
 void check_start(const Params<double>& start, const std::vector<FreeParam>& free) {
@@ -112,14 +142,11 @@ void check_start(const Params<double>& start, const std::vector<FreeParam>& free
 }
 
 // How far each parameter moves the weighted residual; one where only a pull holds it.
-Eigen::VectorXd scales(const Aim& aim) {
-  Eigen::VectorXd residual;
-  RowMatrix jacobian;
-  aim.problem.evaluate(aim.start, indices(aim.free), &residual, &jacobian);
-  if (!residual.allFinite()) {
+Eigen::VectorXd scales(const Aim& aim, const Answer& at_start) {
+  if (!at_start.residual.allFinite()) {
     throw std::invalid_argument("fit: the residual at the start is not finite");
   }
-  Eigen::VectorXd scale = (aim.weight.asDiagonal() * jacobian).colwise().norm();
+  Eigen::VectorXd scale = (aim.weight.asDiagonal() * at_start.jacobian).colwise().norm();
   for (std::size_t k = 0; k < aim.free.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     if (scale[i] > 0.0 && std::isfinite(scale[i])) {
@@ -193,11 +220,13 @@ std::vector<int> pressed(const Residuals& residuals, const Box& box, const Eigen
 }
 
 // One run of the solver with the parameters `held` as they are.
-ceres::Solver::Summary solve(const Aim& aim, const Box& box, const FitOptions& options, const std::vector<int>& held,
-                             Eigen::VectorXd* x) {
+ceres::Solver::Summary solve(Residuals* residuals, const Box& box, const FitOptions& options,
+                             const std::vector<int>& held, Eigen::VectorXd* x) {
   const int n = static_cast<int>(x->size());
-  ceres::Problem problem;
-  problem.AddResidualBlock(new Residuals(aim), nullptr, x->data());
+  ceres::Problem::Options ours;
+  ours.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ours);
+  problem.AddResidualBlock(residuals, nullptr, x->data());
   if (static_cast<int>(held.size()) == n) {
     problem.SetParameterBlockConstant(x->data());
   } else if (!held.empty()) {
@@ -217,14 +246,15 @@ ceres::Solver::Summary solve(const Aim& aim, const Box& box, const FitOptions& o
 
 // Moves fit.params from the start to the minimum. The solver cuts its steps at the bounds, and with a parameter at one it
 // stops long before the others are where they belong; so it runs again with that parameter held, until the same ones
-// press on their bounds before and after.
-void minimise(const Aim& aim, const FitOptions& options, Fit* fit) {
+// press on their bounds before and after. Returns the answer there.
+Answer minimise(const Aim& aim, Answer at_start, const FitOptions& options, Fit* fit) {
   const Box box = box_of(aim);
-  const Residuals residuals(aim);
   Eigen::VectorXd x = values_of(aim.start, aim.free).cwiseProduct(aim.scale).cwiseMax(box.lower).cwiseMin(box.upper);
+  at_start.x = x;
+  Residuals residuals(aim, std::move(at_start));
   std::vector<int> held;
   for (int round = 0; round < 8; ++round) {
-    const ceres::Solver::Summary summary = solve(aim, box, options, held, &x);
+    const ceres::Solver::Summary summary = solve(&residuals, box, options, held, &x);
     fit->iterations += static_cast<int>(summary.iterations.size()) - 1;
     fit->converged = summary.termination_type == ceres::CONVERGENCE;
     fit->message = summary.message;
@@ -234,7 +264,8 @@ void minimise(const Aim& aim, const FitOptions& options, Fit* fit) {
     }
     held = now;
   }
-  fit->params = with_values(aim.start, aim.free, x.cwiseQuotient(aim.scale));
+  fit->params = with_values(aim.start, aim.free, aim.value_at(x));
+  return residuals.answer_at(x);
 }
 
 }  // namespace
@@ -252,11 +283,14 @@ Fit fit(const Problem& problem, const Params<double>& start, const std::vector<F
   out.params = start;
   out.converged = true;
   Aim aim = {problem, start, free, w, options.huber, {}};
+  Answer answer;
+  problem.evaluate(start, indices(free), &answer.residual, &answer.jacobian);
   if (!free.empty()) {
-    aim.scale = scales(aim);
-    minimise(aim, options, &out);
+    aim.scale = scales(aim, answer);
+    answer = minimise(aim, std::move(answer), options, &out);
   }
-  problem.evaluate(out.params, indices(free), &out.residual, &out.jacobian);
+  out.residual = std::move(answer.residual);
+  out.jacobian = std::move(answer.jacobian);
   for (Eigen::Index i = 0; i < w.size(); ++i) {
     const double r = soften(w[i] * out.residual[i], options.huber).value;
     out.cost += r * r;

@@ -28,6 +28,9 @@ class ProblemOf {
   // jacobian (rows x free.size()), or nullptr: its exact derivatives against the parameters free[k] (ParamIndex).
   virtual void evaluate(const Machine& params, const std::vector<int>& free, Eigen::VectorXd* residual,
                         RowMatrix* jacobian) const = 0;
+
+  // Whether the same parameters give the same answer again, bit for bit; not where a search goes on from the last one.
+  virtual bool repeats() const { return true; }
 };
 
 using Problem = ProblemOf<Params<double>>;

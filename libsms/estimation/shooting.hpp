@@ -89,6 +89,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   }
 
   int rows() const override { return rows_; }
+  bool repeats() const override { return false; }
   const std::vector<Window>& windows() const { return windows_; }
 
   void evaluate(const Machine<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,

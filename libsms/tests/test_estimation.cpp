@@ -32,6 +32,31 @@ est::CylinderRecord record_of(const sms::Params<double>& truth, int n, sms_test:
   return r;
 }
 
+// Counts how often derivatives are asked for where they were asked for last.
+class Counted : public est::Problem {
+ public:
+  Counted(const est::Problem& problem, bool repeats) : problem_(problem), repeats_(repeats) {}
+
+  int rows() const override { return problem_.rows(); }
+  bool repeats() const override { return repeats_; }
+  void evaluate(const sms::Params<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,
+                est::RowMatrix* jacobian) const override {
+    problem_.evaluate(params, free, residual, jacobian);
+    if (jacobian != nullptr) {
+      const Eigen::Vector2d here(params.coulomb_force, params.viscous_friction);
+      again += here.isApprox(last_, 1e-15) ? 1 : 0;
+      last_ = here;
+    }
+  }
+
+  mutable int again = 0;
+
+ private:
+  const est::Problem& problem_;
+  bool repeats_;
+  mutable Eigen::Vector2d last_ = Eigen::Vector2d::Zero();
+};
+
 }  // namespace
 
 TEST_CASE("Jet derivatives of friction agree with differences, at the limits too") {
@@ -128,6 +153,31 @@ TEST_CASE("a fit recovers what made the data, and names a start outside the boun
 
   CHECK_THROWS_WITH_AS(est::fit(problem, truth, {{sms::index_of_bore_diameter, 0.09, 0.1}}, {}),
                        doctest::Contains("bore_diameter"), std::invalid_argument);
+}
+
+TEST_CASE("derivatives are not computed twice at one place, but where a second answer may be another") {
+  sms_test::Random random;
+  sms::Params<double> truth;
+  truth.coulomb_force = 31.0;
+  truth.viscous_friction = 480.0;
+  est::CylinderRecord record = record_of(truth, 300, random);
+  for (double& force : record.rod_force) {
+    force += random.uniform(-1.0, 1.0);
+  }
+  const est::CylinderProblem problem({record});
+  for (const double upper : {1e3, 30.0}) {  // free, and ending at a bound, where the solver runs twice
+    const std::vector<est::FreeParam> free = {{sms::index_of_coulomb_force, 0.0, upper},
+                                              {sms::index_of_viscous_friction, 0.0, 1e4}};
+    sms::Params<double> start;
+    start.coulomb_force = 20.0;
+    const Counted once(problem, true), anew(problem, false);
+    const est::Fit kept = est::fit(once, start, free, {}), asked = est::fit(anew, start, free, {});
+    CHECK(anew.again >= once.again + 2);  // at the start and at the end
+    CHECK(kept.params.coulomb_force == asked.params.coulomb_force);
+    CHECK(kept.params.viscous_friction == asked.params.viscous_friction);
+    CHECK(kept.cost == asked.cost);
+    CHECK((kept.jacobian - asked.jacobian).cwiseAbs().maxCoeff() < 1e-12);
+  }
 }
 
 TEST_CASE("a record with a hole or a NaN is refused by name") {
