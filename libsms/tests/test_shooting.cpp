@@ -138,6 +138,29 @@ TEST_CASE("the projected Jacobian is that of the residual at the refitted initia
   }
 }
 
+TEST_CASE("after a Jacobian a search begins where the best initial states have moved to, to first order") {
+  sms_test::Random random;
+  const sms::Params<double> p;
+  const std::vector<int> free = {sms::index_of_mass_flow_gain, sms::index_of_compression_heat_ratio,
+                                 sms::index_of_valve_centre};
+  sms::Params<double> moved = p;
+  moved.mass_flow_gain *= 1.0 + random.uniform(-0.01, 0.01);
+  moved.compression_heat_ratio += random.uniform(-0.01, 0.01);
+  moved.valve_centre += random.uniform(-0.01, 0.01);
+  auto stays = problem_of(p, 620, 1e12), follows = problem_of(p, 620, 1e12);  // no step is worth being made
+  const auto searches = problem_of(p, 620, 1e-9);
+  Eigen::VectorXd still, residual, best;
+  est::RowMatrix jacobian;
+  stays.settle(p);
+  follows.settle(p);
+  stays.evaluate(moved, {}, &still, nullptr);
+  follows.evaluate(p, free, &residual, &jacobian);
+  follows.evaluate(moved, {}, &residual, nullptr);
+  searches.evaluate(moved, {}, &best, nullptr);
+  CHECK(still.squaredNorm() > best.squaredNorm() + 1.0);
+  CHECK(residual.squaredNorm() - best.squaredNorm() < 0.1 * (still.squaredNorm() - best.squaredNorm()));
+}
+
 TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others do not") {
   const sms::Params<double> p;
   const Eigen::MatrixXd plain = simulated(p, 200, 1e-3);

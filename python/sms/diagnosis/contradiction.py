@@ -4,6 +4,9 @@ A regulator that was turned between two runs, loggers started by hand, a gauge t
 right for all records, and a search that holds all of them against one model finds nothing, or a compromise. So each
 record is fitted alone, with the effect that would take most if it were free in each of them. If that explains the
 records, and the values differ by far more than their errors, the records do not belong together.
+
+Asked is only for what a hand changes between two runs. A leak or a friction that each record wants of another size is a
+law that depends on something else, which is unknown.
 """
 
 from __future__ import annotations
@@ -22,6 +25,20 @@ from sms.diagnosis.runs import Runs
 from sms.diagnosis.screening import Nuisance, project
 from sms.diagnosis.visible import raw_columns
 
+BETWEEN_RUNS = (
+    "supply_setpoint",
+    "ambient_pressure",
+    "moving_mass",
+    "centre_of_gravity",
+    "dead_volume",
+    "valve_centre_offset",
+    "command_delay",
+    "controller_mismatch",
+    "clock_skew",
+    "sensor_gain",
+    "sensor_offset",
+)
+"""Ids of effects whose size may be another in the next run."""
 TRIED = 3
 """Effects that are fitted record by record: those that promise most."""
 EXPLAINS = 0.8
@@ -47,6 +64,7 @@ def contradiction(
     """The effect that each record has with a value of its own; None if there is no such. floor: (channels,)."""
     assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
     parts = [(data.identify, baseline), (data.validate, refitted(baseline, data))]
+    effects = [e for e in effects if e.id in BETWEEN_RUNS]
     if not effects or sum(len(runs.motions) for runs, _ in parts) < 3:
         return None
     promise = sum(_promises(runs, at, effects) for runs, at in parts)
