@@ -52,13 +52,14 @@ S lagging(const S& late, const S& now, const S& then, const S& lag, const S& h) 
 }
 
 // Friction that deviates from its law: by how much, N; sets the rate of the seals' deflection. Presliding: they carry a
-// share by their deformation. friction_lag: viscous friction follows the speed of the lubricant's film, which is late.
+// share by their deformation, up to what eq. 6.5 says of steady sliding, F_C. friction_lag: viscous friction follows the
+// speed of the lubricant's film, which is late.
 template <typename S>
 S seal_deviation(const Params<S>& p, const Piston<S>& piston, const S& by_law, const S& deflection, const S& film,
                  S* deflection_rate) {
   S force(0);
   if (!is_absent(p.presliding_share)) {
-    const BristleFriction<S> bristle = lugre_friction(p, piston, deflection);
+    const BristleFriction<S> bristle = lugre_friction<S>(p, piston, deflection, p.coulomb_force);
     force += p.presliding_share * (bristle.force - by_law);
     *deflection_rate = bristle.deflection_rate;
   }

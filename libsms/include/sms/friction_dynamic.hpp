@@ -71,14 +71,20 @@ S sliding_part(const Params<S>& p, const S& velocity, const S& deflection, const
   return S(0.5) + S(0.5) * sin(S(3.14159265358979324) * beyond_middle);
 }
 
+// dry: what the bristles carry in steady sliding, before the effects on it, N.
 template <typename S>
-BristleFriction<S> lugre_friction(const Params<S>& p, const Piston<S>& piston, const S& deflection) {
+BristleFriction<S> lugre_friction(const Params<S>& p, const Piston<S>& piston, const S& deflection, const S& dry) {
   using std::abs;
   const S& v = piston.velocity;
-  const S strength = bristle_strength<S>(p, piston, stribeck_force(p, v));
+  const S strength = bristle_strength(p, piston, dry);
   const S largest = strength / p.bristle_stiffness;
   const S rate = v - sliding_part(p, v, deflection, largest) * abs(v) * (deflection / largest);
   return {p.bristle_stiffness * deflection + p.bristle_damping * rate + p.viscous_friction * v, rate};
+}
+
+template <typename S>
+BristleFriction<S> lugre_friction(const Params<S>& p, const Piston<S>& piston, const S& deflection) {
+  return lugre_friction<S>(p, piston, deflection, stribeck_force(p, piston.velocity));
 }
 
 }  // namespace sms
