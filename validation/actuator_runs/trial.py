@@ -9,22 +9,19 @@ all repeats in the file that were asked for.
 
 from __future__ import annotations
 
-import argparse
 import json
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from statistics import NormalDist
 
 import numpy as np
 from sms.identification.actuator import identify_actuator
 from sms.parameters import PARAMETERS
 from sms.units_display import display_unit, words
 
+from validation import repeats
 from validation.actuator_runs.draw import Machine, draw
-
-LEVEL = NormalDist().inv_cdf(0.975)
 
 
 @dataclass(frozen=True)
@@ -63,27 +60,26 @@ def run(seeds: Sequence[int], file: Path, machine: Machine) -> Iterator[Repeat]:
         yield done[seed]
 
 
-def table(repeats: Sequence[Repeat]) -> list[str]:
+def table(trials: Sequence[Repeat]) -> list[str]:
     """Markdown: how often the 95 percent interval held the truth, and how far off the estimates were."""
-    names = list(dict.fromkeys(name for r in repeats for name in r.told))
+    names = list(dict.fromkeys(name for r in trials for name in r.told))
     lines = [
         "| parameter | fitted in | covered | error, rms | as stated, rms |",
         "|---|---|---|---|---|",
     ]
     for name in names:
-        rows = np.array([r.told[name] for r in repeats if name in r.told])
+        rows = np.array([r.told[name] for r in trials if name in r.told])
         rows = rows[np.isfinite(rows[:, 2])]
-        off = rows[:, 1] - rows[:, 0]
-        covered = float(np.mean(np.abs(off) <= LEVEL * rows[:, 2]))
+        covered = np.mean(repeats.holds(rows))
         unit = display_unit(PARAMETERS[name].unit, float(np.median(np.abs(rows[:, 0]))), name)
-        rms, stated = (unit.factor * float(np.sqrt(np.mean(v**2))) for v in (off, rows[:, 2]))
+        rms, stated = (unit.factor * repeats.rms(v) for v in (rows[:, 1] - rows[:, 0], rows[:, 2]))
         lines.append(
-            f"| {words(name)} | {len(rows)} of {len(repeats)} | {100.0 * covered:.1f} % | "
+            f"| {words(name)} | {len(rows)} of {len(trials)} | {100.0 * covered:.1f} % | "
             f"{rms:.2g} {unit.label} | {stated:.2g} {unit.label} |"
         )
-    together = np.concatenate([list(r.told.values()) for r in repeats])
+    together = np.concatenate([list(r.told.values()) for r in trials])
     together = together[np.isfinite(together[:, 2])]
-    held = np.abs(together[:, 1] - together[:, 0]) <= LEVEL * together[:, 2]
+    held = repeats.holds(together)
     lines.append(
         f"\n{held.sum()} of {held.size} intervals hold the truth: {100.0 * held.mean():.1f} %"
     )
@@ -92,21 +88,13 @@ def table(repeats: Sequence[Repeat]) -> list[str]:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(prog="python -m validation.actuator_runs.trial")
-    parser.add_argument("--repeats", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1, help="of the first repeat")
+    parser = repeats.parser_of("validation.actuator_runs.trial")
     parser.add_argument("--machine", choices=("published", "other"), default="published")
     parser.add_argument("--file", type=Path, help="default: build/actuator_trials_MACHINE.jsonl")
     options = parser.parse_args()
     file = options.file or Path("build") / f"actuator_trials_{options.machine}.jsonl"
     file.parent.mkdir(parents=True, exist_ok=True)
-    seeds = range(options.seed, options.seed + options.repeats)
-    repeats = []
-    for found in run(seeds, file, options.machine):
-        repeats.append(found)
-        print(f"\r{len(repeats)} of {options.repeats}", end="", flush=True)
-    print(f"\r{len(repeats)} repeats from seed {options.seed}\n")
-    print("\n".join(table(repeats)))
+    repeats.report(run(repeats.seeds_of(options), file, options.machine), options, table)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ the truth does not have are claimed falsely wherever they are "shown".
 
 from __future__ import annotations
 
-import argparse
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from sms.identification.friction import identify_friction
 from sms.identification.friction_fit import FALSE
 from sms.units_display import words
 
+from validation import repeats
 from validation.friction_runs.draw import Friction, Run, draw
 
 RUNS = (
@@ -61,44 +61,36 @@ def repeat(seed: int) -> Repeat:
     return Repeat({t.name: (t.value, t.half_width, t.shown) for t in found.told})
 
 
-def table(repeats: Sequence[Repeat]) -> list[str]:
+def table(trials: Sequence[Repeat]) -> list[str]:
     """Markdown: coverage, errors, how often shown; then the false claims."""
     lines = [
         "| parameter | truth | fitted in | inside its bounds | covered | error, rms | shown |",
         "|---|---|---|---|---|---|---|",
     ]
     for name, truth in TRUTH.items():
-        rows = np.array([r.told[name] for r in repeats if name in r.told])
+        rows = np.array([r.told[name] for r in trials if name in r.told])
         if not len(rows):
             continue
         inside = rows[np.isfinite(rows[:, 1])]
         covered = np.abs(inside[:, 0] - truth) <= inside[:, 1]
-        rms = float(np.sqrt(np.mean((rows[:, 0] - truth) ** 2)))
+        rms = repeats.rms(rows[:, 0] - truth)
         share = f"{100.0 * covered.mean():.1f} %" if len(inside) else ""
         lines.append(
             f"| {words(name)} | {truth:g} | {len(rows)} | {len(inside)} | {share} | {rms:.2g} | "
             f"{100.0 * rows[:, 2].mean():.0f} % |"
         )
-    false = sum(r.false for r in repeats)
+    false = sum(r.false for r in trials)
     lines.append(
-        f"\n{false} of {len(repeats)} record sets claim a term that the truth does not have "
-        f"({100.0 * false / len(repeats):.1f} %; at most {100.0 * FALSE:g} % are meant to)"
+        f"\n{false} of {len(trials)} record sets claim a term that the truth does not have "
+        f"({100.0 * false / len(trials):.1f} %; at most {100.0 * FALSE:g} % are meant to)"
     )
     return lines
 
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(prog="python -m validation.friction_runs.trial")
-    parser.add_argument("--repeats", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1, help="of the first repeat")
-    options = parser.parse_args()
-    repeats = []
-    for seed in range(options.seed, options.seed + options.repeats):
-        repeats.append(repeat(seed))
-        print(f"\r{len(repeats)} of {options.repeats}", end="", flush=True)
-    print(f"\r{len(repeats)} repeats from seed {options.seed}\n")
-    print("\n".join(table(repeats)))
+    options = repeats.parser_of("validation.friction_runs.trial").parse_args()
+    repeats.report(map(repeat, repeats.seeds_of(options)), options, table)
 
 
 if __name__ == "__main__":

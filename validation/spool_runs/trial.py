@@ -5,19 +5,17 @@ python -m validation.spool_runs.trial [--repeats 200] [--seed 1]
 
 from __future__ import annotations
 
-import argparse
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from statistics import NormalDist
 
 import numpy as np
 from sms.identification.spool import identify_spool
 from sms.units_display import words
 
+from validation import repeats
 from validation.spool_runs.draw import draw
 
-LEVEL = NormalDist().inv_cdf(0.975)
 UNITS = {
     "valve_frequency": (1.0, "Hz"),
     "valve_damping_ratio": (1.0, ""),
@@ -42,14 +40,13 @@ def repeat(seed: int) -> dict[str, tuple[float, float, float]]:
     return told | {"centre": (spool.centre, *best.centre)}
 
 
-def table(repeats: Sequence[dict[str, tuple[float, float, float]]]) -> list[str]:
+def table(trials: Sequence[dict[str, tuple[float, float, float]]]) -> list[str]:
     """Markdown."""
     lines = ["| parameter | covered | error, rms | as stated, rms |", "|---|---|---|---|"]
     for name, (factor, unit) in UNITS.items():
-        rows = np.array([r[name] for r in repeats if name in r])
-        off = rows[:, 1] - rows[:, 0]
-        covered = np.mean(np.abs(off) <= LEVEL * rows[:, 2])
-        rms, stated = (factor * float(np.sqrt(np.mean(v**2))) for v in (off, rows[:, 2]))
+        rows = np.array([r[name] for r in trials if name in r])
+        covered = np.mean(repeats.holds(rows))
+        rms, stated = (factor * repeats.rms(v) for v in (rows[:, 1] - rows[:, 0], rows[:, 2]))
         lines.append(
             f"| {words(name)} | {100.0 * covered:.1f} % | {rms:.2g} {unit} | {stated:.2g} {unit} |"
         )
@@ -58,16 +55,8 @@ def table(repeats: Sequence[dict[str, tuple[float, float, float]]]) -> list[str]
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(prog="python -m validation.spool_runs.trial")
-    parser.add_argument("--repeats", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1, help="of the first repeat")
-    options = parser.parse_args()
-    repeats = []
-    for seed in range(options.seed, options.seed + options.repeats):
-        repeats.append(repeat(seed))
-        print(f"\r{len(repeats)} of {options.repeats}", end="", flush=True)
-    print(f"\r{len(repeats)} repeats from seed {options.seed}\n")
-    print("\n".join(table(repeats)))
+    options = repeats.parser_of("validation.spool_runs.trial").parse_args()
+    repeats.report(map(repeat, repeats.seeds_of(options)), options, table)
 
 
 if __name__ == "__main__":
