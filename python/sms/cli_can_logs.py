@@ -71,7 +71,7 @@ def record(
 
 
 def replay(
-    log: Annotated[Path, typer.Argument(help="The log: .blf, .asc, .mf4, .csv, .log, .trc.")],
+    log: Annotated[Path, typer.Argument(help="The log: .blf, .asc, .mf4, .csv, .log, .trc, .db.")],
     interface: Interface = VIRTUAL,
     channel: Channel = None,
     bitrate: Bitrate = DEFAULT_BITRATE,
@@ -98,7 +98,7 @@ def replay(
 
 
 def table(
-    log: Annotated[Path, typer.Argument(help="The log: .blf, .asc, .mf4, .csv, .log, .trc.")],
+    log: Annotated[Path, typer.Argument(help="The log: .blf, .asc, .mf4, .csv, .log, .trc, .db.")],
     out: Annotated[Path, typer.Option(help="The table to write, .csv or .csv.gz.")] = Path(
         "run.csv"
     ),

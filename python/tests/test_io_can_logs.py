@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import can
@@ -100,10 +102,28 @@ def read(folder: Path, log: str, signals: str = SIGNALS) -> Record:
     return load_record(rig, rig.records[0])
 
 
-@pytest.mark.parametrize("ending", WRITTEN)
+def write_elsewhere(path: Path, frames: list[can.Message]) -> Path:
+    """A log in a format that other programs write: candump, TRC, SQLite, packed."""
+    if path.suffix == ".db":  # python-can's writer may be stopped before it has written all
+        rows = [(f.timestamp, f.arbitration_id, 0, 0, 0, f.dlc, bytes(f.data)) for f in frames]
+        with closing(sqlite3.connect(path)) as database, database:
+            database.execute(
+                "CREATE TABLE messages (ts REAL, arbitration_id INTEGER, extended INTEGER, "
+                "remote INTEGER, error INTEGER, dlc INTEGER, data BLOB)"
+            )
+            database.executemany("INSERT INTO messages VALUES (?, ?, ?, ?, ?, ?, ?)", rows)
+    else:
+        with can.Logger(path) as log:
+            for one in frames:
+                log.on_message_received(one)
+    return path
+
+
+@pytest.mark.parametrize("ending", [*WRITTEN, ".log", ".trc", ".db", ".asc.gz", ".TRC.gz"])
 def test_every_format_gives_the_same_record(tmp_path: Path, dbc: Path, ending: str) -> None:
     frames = healthy_frames()
-    log = write_log(tmp_path / f"run{ending}", frames)
+    write = write_log if ending in WRITTEN else write_elsewhere
+    log = write(tmp_path / f"run{ending}", frames)
     assert is_can_log(log)
     assert [f for f in tmp_path.iterdir() if f.name.startswith(".")] == []
 
@@ -205,6 +225,11 @@ def test_what_cannot_be_a_record_is_said(tmp_path: Path, dbc: Path) -> None:
     )
     (tmp_path / "run.blf").write_bytes(b"LOGG but no log")
     assert "not a readable .blf log" in failure(tmp_path, "run.blf", SIGNALS)
+    for name in ("run.db", "run.mf4"):
+        (tmp_path / name).write_bytes(b"no log")
+        assert f"not a readable {name[3:]} log" in failure(tmp_path, name, SIGNALS)
+    (tmp_path / "run.trc.gz").write_bytes(b"not packed")
+    assert "not a readable .trc log" in failure(tmp_path, "run.trc.gz", SIGNALS)
     with pytest.raises(InputError, match=r"use \.blf, \.asc, \.mf4, \.csv"):
         LogWriter(tmp_path / "run.xyz")
     dbc.write_text("no bus")

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from sms.io.errors import InputError
 
 TEXT_ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")
-_CAN_ENDINGS = (".blf", ".mf4", ".trc")
+_CAN_ENDINGS = (".blf", ".mf4", ".trc", ".db")
 _CAN_OPENINGS = {  # the first line of a CAN log that is text; a table may have the same ending
     ".asc": r"\s*(date|//|base)\b",
     ".csv": r"timestamp,arbitration_id,extended,remote,error,dlc,data\s*$",
@@ -67,16 +67,27 @@ class Table:
         return values, [(int(i), text) for i, text in zip(bad, texts, strict=True)]
 
 
+def is_packed(file: Path) -> bool:
+    """Whether a file is packed by gzip, by its name."""
+    return file.name.lower().endswith(".gz")
+
+
+def ending_of(file: Path) -> str:
+    """What the name says of the format, without what it says of packing: ".asc" of "Run.ASC.gz"."""
+    return Path(file.name.lower().removesuffix(".gz")).suffix
+
+
 def is_can_log(file: Path) -> bool:
-    """Whether a file holds CAN frames, by its ending and, for text, by its first line."""
-    ending = file.suffix.lower()
+    """Whether a file holds CAN frames, by its ending and, for text, by its first line; packed (.gz) or not."""
+    ending = ending_of(file)
     if ending not in _CAN_OPENINGS:
         return ending in _CAN_ENDINGS
     try:
-        with file.open(encoding="utf-8", errors="replace") as text:
-            return re.match(_CAN_OPENINGS[ending], text.readline(200)) is not None
-    except OSError:
+        with (gzip.open if is_packed(file) else open)(file, "rb") as opened:
+            first = opened.readline(200).decode("utf-8", "replace")
+    except (OSError, EOFError, zlib.error):
         return False
+    return re.match(_CAN_OPENINGS[ending], first) is not None
 
 
 def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
@@ -89,16 +100,17 @@ def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Tab
         from sms.io.can_logs import read_telemetry  # noqa: PLC0415 (python-can takes its time)
 
         return read_telemetry(file)
-    ending = Path(file.name.lower().removesuffix(".gz")).suffix
+    ending = ending_of(file)
     if ending in TEXT_ENDINGS:
         return _read_text(file, delimiter, columns)
-    if ending == ".mat" and not file.name.lower().endswith(".gz"):
+    if ending == ".mat" and not is_packed(file):
         return _read_matlab(file, columns)
     if ending == ".parquet":
         return _read_parquet(file)
     raise InputError(
         f"{file}: files with the ending '{ending}' are not read; save it as .csv "
-        f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet; CAN logs .blf, .mf4)"
+        f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet; "
+        "CAN logs .asc, .csv, .log, .trc, each also .gz, .blf, .mf4, .db)"
     )
 
 
@@ -106,7 +118,7 @@ def _decoded(file: Path) -> str:
     """The text of a file, unpacked if its name ends with .gz."""
     try:
         content = file.read_bytes()
-        if file.name.lower().endswith(".gz"):
+        if is_packed(file):
             content = gzip.decompress(content)
     except (gzip.BadGzipFile, EOFError, zlib.error):
         raise InputError(f"{file}: broken or cut-off gzip file; copy it again") from None

@@ -1,4 +1,4 @@
-"""Logs of a CAN bus: BLF, ASC, MF4, CSV, candump and TRC by the ending of the name, through python-can.
+"""Logs of a CAN bus: BLF, ASC, MF4, CSV, candump, TRC and SQLite by the ending of the name, through python-can.
 
 Writing is safe: frames go to a hidden file beside the wanted one, which takes its name when it is closed. So a reader
 sees a whole log or none, whatever stops the recording.
@@ -6,15 +6,18 @@ sees a whole log or none, whatever stops the recording.
 
 from __future__ import annotations
 
+import gzip
 import secrets
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import MappingProxyType, TracebackType
+from typing import Any
 
 import can
 
 from sms.io.errors import InputError
+from sms.io.tables import ending_of, is_packed
 
 #: what `record` writes
 WRITTEN = (".blf", ".asc", ".mf4", ".csv")
@@ -26,37 +29,47 @@ _READERS: Mapping[str, type[can.io.generic.MessageReader]] = MappingProxyType(
         ".csv": can.CSVReader,
         ".log": can.CanutilsLogReader,
         ".trc": can.TRCReader,
+        ".db": can.SqliteReader,
     }
 )
+_NEVER_PACKED = (can.BLFReader, can.MF4Reader, can.SqliteReader)
 _NEEDS_MF4 = "MF4 needs one more package: pip install 'sms[can]', or use .blf"
 
 
 def read_frames(file: Path) -> Iterator[can.Message]:
-    """The frames of a log in the order in which they stand there, times in s.
+    """The frames of a log, packed (.gz) or not, in the order in which they stand there, times in s.
 
     InputError names a file that is missing, of another kind or broken, and what to do.
     """
-    reader = _READERS.get(file.suffix.lower())
-    if reader is None:
+    reader = _READERS.get(ending_of(file))
+    if reader is None or (is_packed(file) and reader in _NEVER_PACKED):
         raise InputError(f"{file}: not a CAN log (known endings: {', '.join(_READERS)})")
     if not file.is_file():
         raise InputError(f"{file}: there is no such log; check the path")
+    # times as written, not shifted to the date of the header
+    options = {"relative_timestamp": True} if reader is can.ASCReader else {}
     number = 0
     try:
-        if reader is can.ASCReader:  # times as written, not shifted to the date of the header
-            log: can.io.generic.MessageReader = can.ASCReader(file, relative_timestamp=True)
-        else:
-            log = reader(file)
-        with log:
+        with _opened(file) as source, reader(source, **options) as log:
             for number, frame in enumerate(log, 1):  # noqa: B007 (named in the error below)
                 yield frame
     except NotImplementedError:
         raise InputError(f"{file}: {_NEEDS_MF4}") from None
     except Exception as problem:  # each format's reader has errors of its own
         raise InputError(
-            f"{file}: not a readable {file.suffix} log after frame {number} ({problem}); "
+            f"{file}: not a readable {ending_of(file)} log after frame {number} ({problem}); "
             "it may have been cut off"
         ) from None
+
+
+@contextmanager
+def _opened(file: Path) -> Iterator[Any]:
+    """What python-can is to read: a text that was packed, or the file itself."""
+    if is_packed(file):
+        with gzip.open(file, "rt") as text:
+            yield text
+    else:
+        yield file
 
 
 class LogWriter:
