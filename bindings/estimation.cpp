@@ -58,18 +58,7 @@ est::Fit fit(const est::Problem& problem, const Params& start, const std::vector
 
 std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const est::Problem& problem, const Params& params,
                                                     const std::vector<std::string>& names) {
-  std::vector<int> free;
-  for (const std::string& name : names) {
-    free.push_back(param_index(name));
-  }
-  Eigen::VectorXd residual;
-  est::RowMatrix jacobian;
-  py::gil_scoped_release unlocked;
-  problem.evaluate(params, free, &residual, free.empty() ? nullptr : &jacobian);
-  if (free.empty()) {
-    jacobian.resize(problem.rows(), 0);
-  }
-  return {residual, jacobian};
+  return evaluate_by_name(problem, params, names, &param_index);
 }
 
 // ---- spool ----

@@ -87,18 +87,7 @@ std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> r
 
 std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const PlatformProblem& problem, const LegParams& params,
                                                     const std::vector<std::string>& names) {
-  std::vector<int> free;
-  for (const std::string& name : names) {
-    free.push_back(leg_param_index(name));
-  }
-  Eigen::VectorXd residual;
-  est::RowMatrix jacobian;
-  py::gil_scoped_release unlocked;
-  problem.evaluate(params, free, &residual, free.empty() ? nullptr : &jacobian);
-  if (free.empty()) {
-    jacobian.resize(problem.rows(), 0);
-  }
-  return {residual, jacobian};
+  return evaluate_by_name(problem, params, names, &leg_param_index);
 }
 
 }  // namespace
@@ -111,23 +100,18 @@ void bind_platform_problem(py::module_& m) {
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
            py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(),
            py::arg("conditions") = std::map<std::string, double>());
-  py::class_<PlatformProblem>(m, "PlatformProblem", "Prediction errors over windows, in units of the noise.")
-      .def(py::init(&make_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
-           py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
-           py::arg("chambers") = "polytropic", py::arg("masses") = 0, py::arg("window") = 1.0,
-           py::arg("longest_step") = 2.5e-3, py::arg("threads") = 1)
+  bind_shooting_problem<est::PlatformPlant>(m, "PlatformProblem")
+      .def(
+          py::init(&make_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+          py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+          py::arg("chambers") = "polytropic", py::arg("masses") = 0, py::arg("window") = 1.0,
+          py::arg("longest_step") = 2.5e-3, py::arg("threads") = 1,
+          "noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, "
+          "chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, "
+          "N, and flows into the three lower and the three upper chambers, kg/s.")
       .def_property_readonly("rows", &PlatformProblem::rows)
-      .def_property_readonly("windows", &PlatformProblem::windows)
       .def("evaluate", &evaluate, py::arg("params"), py::arg("free") = std::vector<std::string>(),
-           "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.")
-      .def("settle", &PlatformProblem::settle, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
-           "Let later searches for initial states begin at the best ones of these parameters.")
-      .def("errors", &PlatformProblem::errors, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
-           "(rows,): predicted less measured over the noise, at the best initial states.")
-      .def("hidden", &PlatformProblem::hidden, py::arg("params"), py::arg("knots"),
-           py::call_guard<py::gil_scoped_release>(),
-           "(rows, 9 knots): derivatives against hidden forces on the three pistons and hidden flows into the three "
-           "lower and the three upper chambers, in each window.");
+           "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.");
 }
 
 }  // namespace sms_python

@@ -65,7 +65,7 @@ void bind_bench(py::module_& m) {
       .def(py::init(&make_bench_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
            py::arg("conditions") = std::map<std::string, double>());
-  bind_shooting_problem<est::BenchPlant>(m, "BenchProblem")
+  bind_shooting_problem<est::BenchPlant, est::Problem>(m, "BenchProblem")
       .def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
            py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
@@ -81,7 +81,7 @@ void bind_tank(py::module_& m) {
       .def(py::init(&make_tank_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("pressure"),
            py::arg("temperature") = Eigen::VectorXd(), py::arg("supply_pressure") = Eigen::VectorXd(),
            py::arg("conditions") = std::map<std::string, double>());
-  bind_shooting_problem<est::TankPlant>(m, "TankPlantProblem")
+  bind_shooting_problem<est::TankPlant, est::Problem>(m, "TankPlantProblem")
       .def(py::init(&make_tank_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic", py::arg("window") = 1.0,
            py::arg("longest_step") = 1e-3, py::arg("threads") = 1,

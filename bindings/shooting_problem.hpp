@@ -38,11 +38,30 @@ inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string&
           false};
 }
 
-template <typename Plant>
-py::class_<sms::estimation::ShootingProblem<Plant>, sms::estimation::Problem> bind_shooting_problem(py::module_& m,
-                                                                                                    const char* name) {
+// Residual and Jacobian against parameters by name; `index` gives the ParamIndex of one.
+template <typename Machine>
+std::pair<Eigen::VectorXd, sms::estimation::RowMatrix> evaluate_by_name(
+    const sms::estimation::ProblemOf<Machine>& problem, const Machine& params, const std::vector<std::string>& names,
+    int (*index)(const std::string&)) {
+  std::vector<int> free;
+  for (const std::string& name : names) {
+    free.push_back(index(name));
+  }
+  Eigen::VectorXd residual;
+  sms::estimation::RowMatrix jacobian;
+  py::gil_scoped_release unlocked;
+  problem.evaluate(params, free, &residual, free.empty() ? nullptr : &jacobian);
+  if (free.empty()) {
+    jacobian.resize(problem.rows(), 0);
+  }
+  return {residual, jacobian};
+}
+
+// Base: what Python knows it derives from, if anything.
+template <typename Plant, typename... Base>
+auto bind_shooting_problem(py::module_& m, const char* name) {
   using Problem = sms::estimation::ShootingProblem<Plant>;
-  py::class_<Problem, sms::estimation::Problem> problem(
+  py::class_<Problem, Base...> problem(
       m, name, "Prediction errors over windows, in units of the noise: for each sample of a window, each output.");
   problem.def_property_readonly("windows", &Problem::windows)
       .def("settle", &Problem::settle, py::arg("params"), py::call_guard<py::gil_scoped_release>(),

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sms.diagnosis.kind import Kind, Run, WindowProblem
 from sms.diagnosis.result import Array
+from sms.diagnosis.runaway import WithinNumbers
 from sms.io.records import Record
 from sms.io.rig import Rig
 
@@ -76,7 +77,9 @@ class Runs:
 
     @cached_property
     def problem(self) -> WindowProblem:
-        return self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+        return WithinNumbers(
+            self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+        )
 
     @cached_property
     def record(self) -> Index:
