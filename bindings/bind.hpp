@@ -28,6 +28,7 @@ void bind_virtual_rig(py::module_& m);
 #ifdef SMS_WITH_ESTIMATION
 void bind_estimation(py::module_& m);
 void bind_platform_problem(py::module_& m);
+void bind_equations(py::module_& m);
 #endif
 
 // Raises the Python exception that belongs to a status other than SMS_OK.

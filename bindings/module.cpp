@@ -18,6 +18,7 @@ PYBIND11_MODULE(_core, m) {
 #ifdef SMS_WITH_ESTIMATION
   sms_python::bind_estimation(m);
   sms_python::bind_platform_problem(m);
+  sms_python::bind_equations(m);
   m.attr("has_estimation") = true;
 #else
   m.attr("has_estimation") = false;

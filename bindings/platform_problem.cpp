@@ -85,12 +85,13 @@ std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> r
       est::WindowOptions{window, 0.1, threads});
 }
 
-std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const PlatformProblem& problem, const LegParams& params,
-                                                    const std::vector<std::string>& names) {
+}  // namespace
+
+std::pair<Eigen::VectorXd, est::RowMatrix> evaluate_with_legs(const est::ProblemOf<LegParams>& problem,
+                                                              const LegParams& params,
+                                                              const std::vector<std::string>& names) {
   return evaluate_by_name(problem, params, names, &leg_param_index);
 }
-
-}  // namespace
 
 void bind_platform_problem(py::module_& m) {
   bind_leg_params(m);
@@ -110,8 +111,13 @@ void bind_platform_problem(py::module_& m) {
           "chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, "
           "N, and flows into the three lower and the three upper chambers, kg/s.")
       .def_property_readonly("rows", &PlatformProblem::rows)
-      .def("evaluate", &evaluate, py::arg("params"), py::arg("free") = std::vector<std::string>(),
-           "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.");
+      .def(
+          "evaluate",
+          [](const PlatformProblem& problem, const LegParams& params, const std::vector<std::string>& free) {
+            return evaluate_with_legs(problem, params, free);
+          },
+          py::arg("params"), py::arg("free") = std::vector<std::string>(),
+          "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.");
 }
 
 }  // namespace sms_python

@@ -10,6 +10,7 @@
 
 #include "bind.hpp"
 #include "choice.hpp"
+#include "estimation/leg_params.hpp"
 #include "estimation/shooting.hpp"
 #include "laws.hpp"
 #include "sms/actuator.hpp"
@@ -75,5 +76,10 @@ auto bind_shooting_problem(py::module_& m, const char* name) {
 
 // shooting_problem.cpp
 void bind_plant_problems(py::module_& m);
+
+// platform_problem.cpp: residual and Jacobian where a parameter may be that of one leg, "name:2".
+std::pair<Eigen::VectorXd, sms::estimation::RowMatrix> evaluate_with_legs(
+    const sms::estimation::ProblemOf<sms::LegParams<double>>& problem, const sms::LegParams<double>& params,
+    const std::vector<std::string>& names);
 
 }  // namespace sms_python

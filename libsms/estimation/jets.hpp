@@ -10,10 +10,11 @@
 namespace sms {
 namespace estimation {
 
-// model(params, residual) writes `rows` residuals for Params<double>, and for Params<Jet> alike. kWidth parameters share
-// one run of the model: 4, one AVX register of derivatives, where it costs little; more where it solves an equation.
-template <int kWidth = 4, typename Model>
-void evaluate_with_jets(const Model& model, int rows, const Params<double>& params, const std::vector<int>& free,
+// model(params, residual) writes `rows` residuals for Params<double>, and for Params<Jet> alike, or for LegParams of
+// either. kWidth parameters share one run of the model: 4, one AVX register of derivatives, where it costs little; more
+// where it solves an equation.
+template <int kWidth = 4, typename Model, template <typename> class Machine>
+void evaluate_with_jets(const Model& model, int rows, const Machine<double>& params, const std::vector<int>& free,
                         Eigen::VectorXd* residual, RowMatrix* jacobian) {
   using Jet = ceres::Jet<double, kWidth>;
 
@@ -27,7 +28,7 @@ void evaluate_with_jets(const Model& model, int rows, const Params<double>& para
   std::vector<Jet> jets(static_cast<std::size_t>(rows));
   for (int first = 0; first < std::max(columns, 1); first += kWidth) {
     const int width = std::min(kWidth, columns - first);
-    Params<Jet> seeded = cast<Jet>(params);
+    Machine<Jet> seeded = cast<Jet>(params);
     for (int k = 0; k < width; ++k) {
       const int column = first + k;
       param(seeded, free[static_cast<std::size_t>(column)]).v[k] = 1.0;

@@ -13,9 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/actuator_step.hpp"
-#include "estimation/leg_params.hpp"
-#include "estimation/measured_path.hpp"
+#include "estimation/platform_rates.hpp"
+#include "estimation/recorded.hpp"
 #include "estimation/shooting.hpp"
 
 namespace sms {
@@ -75,57 +74,13 @@ class PlatformPlant {
                 const S* hidden = nullptr, int knots = 0) const;
 
  private:
-  template <typename S>
-  struct Pistons {
-    using Scalar = S;
-    BenchState<S> leg[3];
-  };
-  template <typename S>
-  static Vec3<S> speeds_of(const Pistons<S>& pistons) {
-    return {pistons.leg[0].velocity, pistons.leg[1].velocity, pistons.leg[2].velocity};
-  }
-  // Parameters of one run: of the mechanism, and of each leg.
-  template <typename S>
-  struct Machines {
-    Params<S> common;
-    Params<S> leg[3];
-  };
-  template <typename S>
-  struct PistonTerms {
-    ActuatorTerms<S> actuator[3];
-    Vec3<S> friction;
-    Vec3<S> along;  // accelerations of the pistons; the next balance begins there
-  };
-  // Hidden inputs of a window; values: nullptr where there are none.
-  template <typename S>
-  struct Hidden {
-    const S* values;
-    int knots;
-    int samples;
-
-    S at(int input, double sample) const { return detail::hidden_at(values + input * knots, knots, samples, sample); }
-  };
-
   const PlatformRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
-
-  template <typename S>
-  static Machines<S> machines_of(LegParams<S> params, const PlatformRecord& record) {
-    for (const auto& condition : record.conditions) {
-      param(params, condition.first) += S(condition.second);
-    }
-    return {params, {params_of_leg(params, 0), params_of_leg(params, 1), params_of_leg(params, 2)}};
-  }
 
   // What the position sensors would have read in the window were they good, by what the parameters say of them.
   MeasuredMotion motion(const Params<double> (&leg)[3], const Window& window) const;
 
   template <typename S>
-  void rates(const Machines<S>& machines, const PathPoint<S>& place, const Mat3<S>& leaning, const Pistons<S>& state,
-             const Vec3<S>& command, const Vec3<S>& film, const Hidden<S>& hidden, double at, PistonTerms<S>& t,
-             Pistons<S>& rate) const;
-
-  template <typename S>
-  S* readings(const Machines<S>& machines, const PlatformRecord& record, int sample, const PathPoint<S>& place,
+  S* readings(const LegMachines<S>& machines, const PlatformRecord& record, int sample, const PathPoint<S>& place,
               const Pistons<S>& state, const Pistons<S>& rate, const PistonTerms<S>& t, S* out) const;
 
   std::vector<PlatformRecord> records_;
@@ -136,77 +91,8 @@ class PlatformPlant {
   double longest_step_;
 };
 
-// The path between two samples.
 template <typename S>
-PathPoint<S> place_between(const std::vector<PathPoint<S>>& path, int sample, double part) {
-  const std::size_t k = static_cast<std::size_t>(sample);
-  PathPoint<S> place = path[k];
-  if (part > 0.0) {
-    vector_of(place) += S(part) * (vector_of(path[k + 1]) - vector_of(path[k]));
-  }
-  return place;
-}
-
-template <typename S>
-void PlatformPlant::rates(const Machines<S>& machines, const PathPoint<S>& place, const Mat3<S>& leaning,
-                          const Pistons<S>& state, const Vec3<S>& command, const Vec3<S>& film, const Hidden<S>& hidden,
-                          double at, PistonTerms<S>& t, Pistons<S>& rate) const {
-  Vec3<S> drive = place.load, aside, speed;
-  Piston<S> piston[3];
-  for (int i = 0; i < 3; ++i) {
-    const Params<S>& p = machines.leg[i];
-    const BenchState<S>& leg = state.leg[i];
-    ActuatorTerms<S>& a = t.actuator[i];
-    fill_chambers(p, laws_, leg.actuator, leg.extension, leg.velocity, a);
-    actuator_rates(p, laws_, leg.actuator, S(command(i)), a, rate.leg[i].actuator);
-    const S warm = p.gas_constant * p.air_temperature;
-    if (hidden.values != nullptr) {
-      drive(i) += hidden.at(i, at);
-      rate.leg[i].actuator.lower.pressure += hidden.at(3 + i, at) * warm / a.lower.volume;
-      rate.leg[i].actuator.upper.pressure += hidden.at(6 + i, at) * warm / a.upper.volume;
-    }
-    drive(i) += a.force;
-    piston[i] = a.piston;
-    aside(i) = leg.extension - place.extension(i);
-    speed(i) = leg.velocity;
-    rate.leg[i].extension = leg.velocity;
-    rate.leg[i].actuator.deflection = S(0);
-  }
-  drive += leaning * aside;
-  if (!is_absent(machines.common.panhard_friction)) {
-    drive -= machines.common.panhard_friction * (place.drag * speed);
-  }
-  if (depends_on_acceleration(laws_.friction)) {
-    coupled_accelerations<S>(machines.leg, laws_.friction, piston, place.mass, drive, t.along);
-    t.friction = drive - place.mass * t.along;
-  } else {
-    for (int i = 0; i < 3; ++i) {
-      const ForceBalance<S> alone =
-          force_balance<S>(machines.leg[i], laws_.friction, piston[i], state.leg[i].actuator.deflection, S(1), S(0));
-      t.friction(i) = alone.friction;
-      rate.leg[i].actuator.deflection = alone.deflection_rate;
-    }
-    t.along = solution<S>(place.mass, drive - t.friction);
-  }
-  Vec3<S> deviation;
-  bool deviates = false;
-  for (int i = 0; i < 3; ++i) {
-    const Params<S>& p = machines.leg[i];
-    deviates = deviates || !is_absent(p.presliding_share) || !is_absent(p.friction_lag);
-    deviation(i) = detail::seal_deviation<S>(p, piston[i], t.friction(i), state.leg[i].actuator.deflection, film(i),
-                                             &rate.leg[i].actuator.deflection);
-  }
-  Vec3<S> acceleration = t.along;
-  if (deviates) {
-    acceleration -= solution<S>(place.mass, deviation);
-  }
-  for (int i = 0; i < 3; ++i) {
-    rate.leg[i].velocity = acceleration(i);
-  }
-}
-
-template <typename S>
-S* PlatformPlant::readings(const Machines<S>& machines, const PlatformRecord& record, int sample,
+S* PlatformPlant::readings(const LegMachines<S>& machines, const PlatformRecord& record, int sample,
                            const PathPoint<S>& place, const Pistons<S>& state, const Pistons<S>& rate,
                            const PistonTerms<S>& t, S* out) const {
   const auto error = [sample](const S& predicted, const auto& measured, int samples, double noise) {
@@ -265,10 +151,9 @@ S* PlatformPlant::readings(const Machines<S>& machines, const PlatformRecord& re
 
 template <typename S>
 void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
-                             const S* hidden_values, int knots) const {
+                             const S* hidden, int knots) const {
   const PlatformRecord& record = of(window.record);
-  const Hidden<S> hidden{hidden_values, knots, window.samples};
-  const Machines<S> machines = machines_of(params, record);
+  const LegMachines<S> machines = machines_of(params, record.conditions);
   const Params<double> plain[3] = {plain_params(machines.leg[0]), plain_params(machines.leg[1]),
                                    plain_params(machines.leg[2])};
   const MeasuredPath<S> path = measured_path_with_slopes(machines.common, masses_, motion(plain, window));
@@ -312,8 +197,14 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
       command(i) =
           detail::command_at<S>(record.command[static_cast<std::size_t>(i)], S(window.first + sample + part) - late[i]);
     }
-    rates<S>(machines, place_between<S>(path.points, sample, part), path.leaning, y, command, films, hidden,
-             sample + part, t, rate);
+    S push[kHidden];
+    if (hidden != nullptr) {
+      for (int input = 0; input < kHidden; ++input) {
+        push[input] = detail::hidden_at(hidden + input * knots, knots, window.samples, sample + part);
+      }
+    }
+    piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y, command, films,
+                    hidden != nullptr ? push : nullptr, t, rate);
   };
   const auto x = vector_of(state);
   for (int k = 0;; ++k) {

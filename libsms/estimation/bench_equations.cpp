@@ -1,0 +1,67 @@
+#include "estimation/bench_equations.hpp"
+
+#include <utility>
+
+#include "estimation/bench_rates.hpp"
+#include "estimation/jets.hpp"
+
+namespace sms {
+namespace estimation {
+
+BenchEquations::BenchEquations(BenchSignals signals, const ActuatorLaws& laws)
+    : signals_(std::move(signals)), laws_(laws) {
+  const std::string name = "signals of a bench";
+  detail::check_step(name, signals_.step, samples());
+  detail::check_actuator(name, signals_.actuator, samples());
+  if (reads_supply()) {
+    detail::check_measured(name, "supply_pressure", signals_.supply_pressure, 0, samples());
+  }
+}
+
+template <typename S>
+void BenchEquations::errors(Params<S> params, S* out) const {
+  for (const auto& condition : signals_.conditions) {
+    param(params, condition.first) += S(condition.second);
+  }
+  const BenchRates<S> rates(params, laws_);
+  const Params<S>& p = rates.params();
+  const ActuatorSignals& signals = signals_.actuator;
+  const double step = signals_.step;
+  const S late = p.command_delay / S(step);
+
+  ActuatorTruth<S> now = actuator_truth(p, signals, 0, step);
+  BenchState<S> state{S(0), S(0), actuator_at_rest<S>(p, S(0), S(0))}, rate;
+  BenchTerms<S> t;
+  S film = now.extension.rate;
+  S reservoir = reads_supply() ? supply_truth(p, signals_.supply_pressure, 0, step).value : p.supply_pressure;
+  for (int k = 0;; ++k) {
+    hold_to(now, state);
+    const S supply = reads_supply() ? supply_truth(p, signals_.supply_pressure, k, step).value : reservoir;
+    state.actuator.supply_pressure = supply;
+    state.actuator.spool = spool_at_sample(p, signals.command, k, step);
+    rates(state, detail::command_at<S>(signals.command, S(k) - late), film, t, rate);
+    *out++ = p.moving_mass * (rate.velocity - now.extension.second);
+    *out++ = as_flow<S>(p, t.actuator.lower, rate.actuator.lower.pressure - now.lower.rate);
+    *out++ = as_flow<S>(p, t.actuator.upper, rate.actuator.upper.pressure - now.upper.rate);
+    reservoir = p.supply_line_resistance > S(0) ? reservoir : p.supply_pressure;
+    if (reads_supply()) {
+      *out++ = reservoir - supply;
+    }
+    if (k == samples() - 1) {
+      return;
+    }
+    const ActuatorTruth<S> next = actuator_truth(p, signals, k + 1, step);
+    film = film_after(p, film, now, next, step);
+    reservoir = reservoir_after<S>(p, reservoir, t.actuator.flow.drawn, step);
+    follow<S>(p, laws_.friction, p.moving_mass, step, t.actuator, rate, state.actuator);
+    now = next;
+  }
+}
+
+void BenchEquations::evaluate(const Params<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,
+                              RowMatrix* jacobian) const {
+  evaluate_with_jets<8>([this](const auto& p, auto* out) { errors(p, out); }, rows(), params, free, residual, jacobian);
+}
+
+}  // namespace estimation
+}  // namespace sms

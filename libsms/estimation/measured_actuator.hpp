@@ -1,0 +1,101 @@
+// One actuator whose extension and chamber pressures were measured (measured.hpp), on the bench as under the platform.
+#pragma once
+
+#include <string>
+
+#include "estimation/actuator_step.hpp"
+#include "estimation/measured.hpp"
+
+namespace sms {
+namespace estimation {
+
+struct ActuatorSignals {
+  Eigen::VectorXd command;
+  MeasuredSignal extension;       // with both derivatives
+  MeasuredSignal pressure_lower;  // with its rate
+  MeasuredSignal pressure_upper;  // with its rate
+};
+
+template <typename S>
+struct ActuatorTruth {
+  Truth<S> extension, lower, upper;
+};
+
+template <typename S>
+ActuatorTruth<S> actuator_truth(const Params<S>& p, const ActuatorSignals& signals, int sample, double step) {
+  const SensorErrors<S> extension{p.sensor_gain_extension, p.sensor_offset_extension,
+                                  p.clock_skew_extension + p.sensor_lag_extension};
+  const SensorErrors<S> lower{p.sensor_gain_chamber_pressure_lower, p.sensor_offset_chamber_pressure_lower,
+                              p.clock_skew_chamber_pressure + p.sensor_lag_chamber_pressure_lower};
+  const SensorErrors<S> upper{p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper,
+                              p.clock_skew_chamber_pressure + p.sensor_lag_chamber_pressure_upper};
+  return {truth_at(signals.extension, sample, step, extension), truth_at(signals.pressure_lower, sample, step, lower),
+          truth_at(signals.pressure_upper, sample, step, upper)};
+}
+
+template <typename S>
+Truth<S> supply_truth(const Params<S>& p, const MeasuredSignal& signal, int sample, double step) {
+  return truth_at<S>(signal, sample, step, {p.sensor_gain_supply_pressure, p.sensor_offset_supply_pressure, S(0)});
+}
+
+// What was measured, put in its place.
+template <typename S>
+void hold_to(const ActuatorTruth<S>& truth, BenchState<S>& state) {
+  state.extension = truth.extension.value;
+  state.velocity = truth.extension.rate;
+  state.actuator.lower.pressure = truth.lower.value;
+  state.actuator.upper.pressure = truth.upper.value;
+}
+
+// The spool at a sample: it follows the command alone.
+template <typename S>
+Lag<S> spool_at_sample(const Params<S>& p, const Eigen::VectorXd& command, int sample, double step) {
+  constexpr double kLongest = 1e-3;  // s
+  const int parts = std::max(1, static_cast<int>(std::ceil(step / kLongest - 1e-9)));
+  return detail::spool_at<S>(p, command, sample, parts, S(step / parts), p.command_delay / S(step));
+}
+
+// What no sensor sees but spool and reservoir, a sample later. `rate` is used up.
+template <typename S>
+void follow(const Params<S>& p, FrictionLaw law, const S& mass, double step, const ActuatorTerms<S>& t,
+            BenchState<S>& rate, ActuatorState<S>& state) {
+  detail::solve_stiff<S>(detail::actuator_stiffness<S>(p, law, mass, t), S(step), rate);
+  state.deflection += S(step) * rate.actuator.deflection;
+  state.lower.temperature += S(step) * rate.actuator.lower.temperature;
+  state.upper.temperature += S(step) * rate.actuator.upper.temperature;
+}
+
+// The lubricant's film, which is late where friction_lag says so.
+template <typename S>
+S film_after(const Params<S>& p, const S& film, const ActuatorTruth<S>& now, const ActuatorTruth<S>& next,
+             double step) {
+  return is_absent(p.friction_lag)
+             ? next.extension.rate
+             : detail::lagging<S>(film, now.extension.rate, next.extension.rate, p.friction_lag, S(step));
+}
+
+// kg/s into a chamber that would make up for a rate of its pressure.
+template <typename S>
+S as_flow(const Params<S>& p, const ChamberSpace<S>& space, const S& pressure_rate) {
+  return space.volume / (p.gas_constant * p.air_temperature) * pressure_rate;
+}
+
+namespace detail {
+
+inline void check_actuator(const std::string& name, const ActuatorSignals& signals, Eigen::Index samples) {
+  check_signal(name, "command", signals.command, samples);
+  check_measured(name, "extension", signals.extension, 2, samples);
+  check_measured(name, "pressure_lower", signals.pressure_lower, 1, samples);
+  check_measured(name, "pressure_upper", signals.pressure_upper, 1, samples);
+}
+
+// std::invalid_argument for a record that is none.
+inline void check_step(const std::string& name, double step, Eigen::Index samples) {
+  if (!(step > 0.0) || samples < 2) {
+    throw std::invalid_argument(name + ": a step of time above zero and two samples at least are needed");
+  }
+}
+
+}  // namespace detail
+}  // namespace estimation
+}  // namespace sms
