@@ -146,12 +146,17 @@ def fit(
     return Fitted(hypothesis, result, covariance)
 
 
-def _fit_runs(hypothesis: Hypothesis, runs: Runs, initial: _core.Params) -> Fitted:
-    start = hypothesis.start
-    free = [
-        Free(n, low, high, 1.0 / hypothesis.known[n] if n in hypothesis.known else 0.0, start[n])
+def free_of(hypothesis: Hypothesis) -> list[Free]:
+    """The free parameters, each pulled to what is declared."""
+    known, start = hypothesis.known, hypothesis.start
+    return [
+        Free(n, low, high, 1.0 / known[n] if n in known else 0.0, start[n])
         for n, (low, high) in hypothesis.free.items()
     ]
+
+
+def _fit_runs(hypothesis: Hypothesis, runs: Runs, initial: _core.Params) -> Fitted:
+    free = free_of(hypothesis)
     found = fit_windows(runs.problem, initial, free)
     pull = np.array([f.pull for f in free])
     bread = np.linalg.pinv(found.jacobian.T @ found.jacobian + np.diag(pull**2), hermitian=True)

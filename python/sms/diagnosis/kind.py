@@ -109,6 +109,18 @@ class Experiment:
 
 
 @dataclass(frozen=True)
+class Equations:
+    """A kind's equations, each fed with measured signals (equation_error.py)."""
+
+    units: Callable[[Sequence[str]], dict[str, str]]
+    """From the outputs that are measured: equation -> unit of its error, in the order of a sample's rows."""
+    derivatives: Mapping[str, int]
+    """Signal that is fed -> how many of its derivatives are needed."""
+    make: Callable[[Rig, Run, Mapping[str, Array]], Problem]
+    """From a rig, a record and its smoothed signals (n, 1 + derivatives): model less measured, sample by sample."""
+
+
+@dataclass(frozen=True)
 class Kind:
     """A kind of rig."""
 
@@ -126,5 +138,7 @@ class Kind:
     """Experiments of which the next is chosen."""
     units: Mapping[str, str] = field(default_factory=lambda: SIGNAL_UNITS)
     """Of every signal."""
+    equations: Equations | None = None
+    """None: the plant is known as a simulation only."""
     short: float = 0.025
     """s: what differs over this time is noise; what lasts longer a model could explain."""

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from sms import _core, simulation
-from sms.diagnosis.kind import Experiment, Kind, Run
+from sms.diagnosis.kind import Equations, Experiment, Kind, Run
 from sms.diagnosis.result import Array
 from sms.io.rig import Rig
 
@@ -17,6 +17,11 @@ WINDOW = 1.0
 """s: length of a window."""
 LONGEST_STEP = 1e-3
 """s: of the integration. At 2.5 ms a piston that stops chatters over the kink of its friction; at 1.25 ms hardly."""
+HIDDEN = {
+    "force": "N",
+    "flow of the lower chamber": "kg/s",
+    "flow of the upper chamber": "kg/s",
+}
 OUTPUTS = ("extension", "chamber_pressure_lower", "chamber_pressure_upper", "supply_pressure")
 
 
@@ -47,6 +52,43 @@ def _record(run: Run, channels: Sequence[str]) -> _core.BenchRecord:
         supply_pressure=s["supply_pressure"] if "supply_pressure" in channels else np.empty(0),
         conditions=run.conditions,
     )
+
+
+# ---- equations fed with measured signals ---------------------------------------------------------
+
+
+def equation_units(channels: Sequence[str]) -> dict[str, str]:
+    """The equations, and the reservoir's where it is read."""
+    supply = {"reading of supply_pressure": "Pa"} if "supply_pressure" in channels else {}
+    return dict(HIDDEN) | supply
+
+
+def make_equations(rig: Rig, run: Run, measured: Mapping[str, Array]) -> _core.BenchEquations:
+    """The core's equations of one record."""
+    return _core.BenchEquations(
+        step=run.step,
+        command=run.signals["valve_command"],
+        extension=measured["extension"],
+        pressure_lower=measured["chamber_pressure_lower"],
+        pressure_upper=measured["chamber_pressure_upper"],
+        supply_pressure=measured.get("supply_pressure", np.empty((0, 0))),
+        conditions=run.conditions,
+        friction=rig.model.friction,
+        valve=rig.model.valve,
+        chambers=rig.model.chambers,
+    )
+
+
+EQUATIONS = Equations(
+    units=equation_units,
+    derivatives={
+        "extension": 2,
+        "chamber_pressure_lower": 1,
+        "chamber_pressure_upper": 1,
+        "supply_pressure": 0,
+    },
+    make=make_equations,
+)
 
 
 def derived(run: Run) -> dict[str, Array]:
@@ -189,9 +231,10 @@ MENU = (
 
 BENCH = Kind(
     outputs=OUTPUTS,
-    hidden={"force": "N", "flow of the lower chamber": "kg/s", "flow of the upper chamber": "kg/s"},
+    hidden=HIDDEN,
     make_problem=make_problem,
     derived=derived,
     shown=("extension", "valve_command"),
     menu=MENU,
+    equations=EQUATIONS,
 )

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from sms import _core, simulation
-from sms.diagnosis.kind import Experiment, Kind, Run, WindowProblem
+from sms.diagnosis.kind import Equations, Experiment, Kind, Problem, Run, WindowProblem
 from sms.diagnosis.result import Array
 from sms.io.rig import Rig
 from sms.io.signals import LEGS, of_legs
@@ -19,6 +19,11 @@ WINDOW = 1.0
 """s: length of a window."""
 LONGEST_STEP = 2.5e-3
 """s: of the integration. Under the platform a piston carries a hundred kilograms, and stops gently."""
+HIDDEN = {
+    **{f"force of leg {leg}": "N" for leg in LEGS},
+    **{f"flow of the lower chamber of leg {leg}": "kg/s" for leg in LEGS},
+    **{f"flow of the upper chamber of leg {leg}": "kg/s" for leg in LEGS},
+}
 OUTPUTS = (
     *of_legs("extension", "chamber_pressure_lower", "chamber_pressure_upper"),
     "supply_pressure",
@@ -61,6 +66,54 @@ def _record(run: Run, channels: Sequence[str]) -> _core.PlatformRecord:
         pitch=run.signals["pitch"] if both else np.empty(0),
         conditions=run.conditions,
     )
+
+
+# ---- equations fed with measured signals ---------------------------------------------------------
+
+
+def equation_units(channels: Sequence[str]) -> dict[str, str]:
+    """The equations of each leg, and the reservoir's and the pose's where they are read."""
+    units = dict(HIDDEN)
+    if "supply_pressure" in channels:
+        units["reading of supply_pressure"] = "Pa"
+    if "roll" in channels:
+        units |= {"reading of roll": "rad", "reading of pitch": "rad"}
+    return units
+
+
+def make_equations(rig: Rig, run: Run, measured: Mapping[str, Array]) -> Problem:
+    """The core's equations of one record."""
+
+    def legs(signals: Mapping[str, Array], name: str) -> list[Array]:
+        return [signals[signal] for signal in of_legs(name)]
+
+    none = np.empty((0, 0))
+    equations = _core.PlatformEquations(
+        step=run.step,
+        command=legs(run.signals, "valve_command"),
+        extension=legs(measured, "extension"),
+        pressure_lower=legs(measured, "chamber_pressure_lower"),
+        pressure_upper=legs(measured, "chamber_pressure_upper"),
+        supply_pressure=measured.get("supply_pressure", none),
+        roll=measured.get("roll", none),
+        pitch=measured.get("pitch", none),
+        conditions=run.conditions,
+        friction=rig.model.friction,
+        valve=rig.model.valve,
+        chambers=rig.model.chambers,
+    )
+    return cast(Problem, equations)  # as above
+
+
+EQUATIONS = Equations(
+    units=equation_units,
+    derivatives={
+        **dict.fromkeys(of_legs("extension"), 2),
+        **dict.fromkeys(of_legs("chamber_pressure_lower", "chamber_pressure_upper"), 1),
+        **dict.fromkeys(("supply_pressure", "roll", "pitch"), 0),
+    },
+    make=make_equations,
+)
 
 
 def derived(run: Run) -> dict[str, Array]:
@@ -206,13 +259,10 @@ MENU = (
 
 PLATFORM = Kind(
     outputs=OUTPUTS,
-    hidden={
-        **{f"force of leg {leg}": "N" for leg in LEGS},
-        **{f"flow of the lower chamber of leg {leg}": "kg/s" for leg in LEGS},
-        **{f"flow of the upper chamber of leg {leg}": "kg/s" for leg in LEGS},
-    },
+    hidden=HIDDEN,
     make_problem=make_problem,
     derived=derived,
     shown=(*of_legs("extension", "valve_command"),),
     menu=MENU,
+    equations=EQUATIONS,
 )

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from sms import _core, simulation
-from sms.diagnosis.kind import Experiment, Kind, Run
+from sms.diagnosis.kind import Equations, Experiment, Kind, Run
 from sms.diagnosis.result import Array
 from sms.io.rig import Rig
 
@@ -17,6 +17,7 @@ WINDOW = 1.0
 """s: length of a window."""
 LONGEST_STEP = 1e-3
 """s: of the integration; the spool of 65 Hz needs it."""
+HIDDEN = {"flow of the tank": "kg/s", "supply pressure": "Pa"}
 OUTPUTS = ("tank_pressure", "tank_temperature", "supply_pressure")
 
 
@@ -47,6 +48,41 @@ def _record(run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
         supply_pressure=measured("supply_pressure"),
         conditions=run.conditions,
     )
+
+
+# ---- equations fed with measured signals ---------------------------------------------------------
+
+
+def equation_units(channels: Sequence[str]) -> dict[str, str]:
+    """The air in the tank, and what thermometer and reservoir add where they are read."""
+    units = {"flow of the tank": "kg/s"}
+    if "tank_temperature" in channels:
+        units["reading of tank_temperature"] = "K"
+    if "supply_pressure" in channels:
+        units["supply pressure"] = "Pa"
+    return units
+
+
+def make_equations(rig: Rig, run: Run, measured: Mapping[str, Array]) -> _core.TankEquations:
+    """The core's equations of one record."""
+    none = np.empty((0, 0))
+    return _core.TankEquations(
+        step=run.step,
+        command=run.signals["valve_command"],
+        pressure=measured["tank_pressure"],
+        temperature=measured.get("tank_temperature", none),
+        supply_pressure=measured.get("supply_pressure", none),
+        conditions=run.conditions,
+        valve=rig.model.valve,
+        chambers=rig.model.chambers,
+    )
+
+
+EQUATIONS = Equations(
+    units=equation_units,
+    derivatives={"tank_pressure": 1, "tank_temperature": 0, "supply_pressure": 0},
+    make=make_equations,
+)
 
 
 def derived(run: Run) -> dict[str, Array]:
@@ -173,9 +209,10 @@ MENU = (
 
 TANK = Kind(
     outputs=OUTPUTS,
-    hidden={"flow of the tank": "kg/s", "supply pressure": "Pa"},
+    hidden=HIDDEN,
     make_problem=make_problem,
     derived=derived,
     shown=("tank_pressure", "valve_command"),
     menu=MENU,
+    equations=EQUATIONS,
 )

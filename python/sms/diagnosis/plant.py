@@ -15,6 +15,7 @@ import numpy as np
 from sms.diagnosis.catalogue import Effect, effects_of
 from sms.diagnosis.contradiction import Contradiction, contradiction, differ
 from sms.diagnosis.empirical import empirical_of
+from sms.diagnosis.equation_error import fed_equations
 from sms.diagnosis.evidence import candidates_of, cause_from, gains_on, value_of
 from sms.diagnosis.excess import Excess, excess_of, explained, small
 from sms.diagnosis.hypothesis import (
@@ -40,6 +41,7 @@ from sms.diagnosis.result import (
     Array,
     Cause,
     Diagnosis,
+    FedEquations,
     Gain,
     Hidden,
     NotTestable,
@@ -72,8 +74,14 @@ class Case:
     """With the verdict data-fault."""
 
     def where(self, rng: np.random.Generator) -> Hidden:
-        """Which equation the baseline's error comes from."""
+        """Which equation the baseline's error comes from, by hidden inputs in the simulation."""
         return _hidden(self.baseline, self.data, self.before, rng)
+
+    def fed(self, rng: np.random.Generator) -> FedEquations | None:
+        """The same with each equation fed with measured signals; None for a kind without such equations."""
+        runs = self.data.identify
+        assert isinstance(runs, Runs)
+        return fed_equations(runs, self.baseline, rng)
 
 
 def make_data(rig: Rig, records: Sequence[Record]) -> Data:
@@ -185,7 +193,7 @@ def complete(
     causes = tuple(_cause(members, case) for members in outcome.classes)
     final = outcome.final if outcome.named else baseline
     progress("asking which equation is wrong", 0.85)
-    hidden = case.where(rng)
+    hidden, fed = case.where(rng), case.fed(np.random.default_rng(blank.seed))
     left = _hidden(final, data, case.after, rng) if causes else None
     gain = _gains(baseline, final, data, case.after.floor, rng)
     curve = None
@@ -205,12 +213,15 @@ def complete(
         sentence=sentence(case.verdict, causes, hidden)
         if case.contradiction is None
         else sentence_of_contradiction(case.contradiction),
-        conclusion=conclusion(case.verdict, causes, gain, hidden, left, case.before, case.after),
+        conclusion=conclusion(
+            case.verdict, causes, gain, hidden, fed, left, case.before, case.after
+        ),
         causes=causes,
         candidates=candidates_of(outcome.rounds),
         not_testable=tuple(case.blind),
         gain=gain,
         hidden=hidden,
+        fed=fed,
         hidden_left=left,
         empirical=curve,
         noise_floor={},

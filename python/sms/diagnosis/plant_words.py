@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from sms.diagnosis.contradiction import Contradiction
 from sms.diagnosis.excess import Excess
-from sms.diagnosis.result import Cause, Finding, Gain, Hidden, Verdict
+from sms.diagnosis.localise import alike
+from sms.diagnosis.result import Cause, FedEquations, Finding, Gain, Hidden, Verdict
 from sms.diagnosis.words import capital, explained
 from sms.units_display import format_aligned, format_percent
 from sms.units_display import words as spaced
@@ -76,6 +77,7 @@ def conclusion(
     causes: Sequence[Cause],
     gain: Sequence[Gain],
     hidden: Hidden,
+    fed: FedEquations | None,
     left: Hidden | None,
     before: Excess,
     after: Excess,
@@ -90,6 +92,8 @@ def conclusion(
         others = sorted(hidden.shares.items(), key=lambda item: -item[1][0])[:3]
         listed = ", ".join(f"{name.replace('_', ' ')} {format_percent(s[0])}" for name, s in others)
         out.append(f"What a hidden term in each equation would take alone: {listed}.")
+    if verdict != "no-evidence" and fed is not None:
+        out.append(two_ways(hidden, fed))
     if causes:
         inside = block_of(causes[0].block)
         if not any(word in hidden.equation for word in inside):
@@ -98,6 +102,52 @@ def conclusion(
                 f"({hidden.equation.replace('_', ' ')}): look at both."
             )
     return tuple(out)
+
+
+def agree(hidden: Hidden, fed: FedEquations) -> bool:
+    """Whether the second way has the first one's equation too: as its largest, or as one that may be.
+
+    What a hidden input has in all legs alike ("force") is what the second way has in each of them.
+    """
+    share = {e.equation: e.share for e in fed.equations}
+    for name, numbers in alike(list(share)).items():
+        of_legs = [fed.equations[n].share for n in numbers]
+        share[name] = (
+            sum(s[0] for s in of_legs),
+            sum(s[1] for s in of_legs),
+            sum(s[2] for s in of_legs),
+        )
+    own = share.get(hidden.equation)
+    return own is not None and own[2] >= share[fed.equation][1]
+
+
+def two_ways(hidden: Hidden, fed: FedEquations) -> str:
+    """What the equations say when each is fed with measured signals, and whether the hidden inputs say the same."""
+    if not fed.beyond_noise:
+        return (
+            "Fed with measured signals, no equation shows more by itself than noise and what two honest descriptions "
+            "of one machine differ by; only the simulation, which adds errors up, does."
+        )
+    most = next(e for e in fed.equations if e.equation == fed.equation)
+    size, noise = format_aligned([most.rms, most.noise], most.unit)
+    found = (
+        f"Fed with measured signals, each equation by itself, {spaced(most.equation)} is off by {size} with a noise of "
+        f"{noise} and has {format_percent(most.share[0])} of what is not noise"
+    )
+    if agree(hidden, fed):
+        same = hidden.equation == fed.equation
+        where = "there too" if same else f"to {spaced(hidden.equation)}, which is as likely here"
+        return f"{found}; hidden inputs in the simulation point {where}: the two ways agree."
+    readings = [e for e in (fed.equation, hidden.equation) if e.startswith("reading of ")]
+    suspect = (
+        f"that of {spaced(readings[0].removeprefix('reading of '))} first"
+        if readings
+        else "or a delay between two of them"
+    )
+    return (
+        f"{found}; hidden inputs in the simulation point to {spaced(hidden.equation)}. The two ways point to different "
+        f"equations: then a reading is suspect, {suspect}."
+    )
 
 
 def block_of(block: str) -> tuple[str, ...]:

@@ -164,6 +164,54 @@ class Hidden:
 
 
 @dataclass(frozen=True)
+class EquationError:
+    """What one equation leaves when it is fed with measured signals. In its own unit."""
+
+    equation: str
+    """As in Hidden: "force", "flow of the lower chamber", ..., "reading of supply_pressure"."""
+    unit: str
+    rms: float
+    """Beyond what the free parameters can undo."""
+    noise: float
+    """Of that, what the noise of the signals makes through smoother and equation."""
+    times_noise: float
+    """Rms of the error over its noise at the time."""
+    share: tuple[float, float, float]
+    """Of what is not noise in all equations, and its 95 percent interval over resampled seconds."""
+
+
+@dataclass(frozen=True)
+class ErrorCurve:
+    """The term that one equation misses in one record. SI; band: half width of 95 percent."""
+
+    equation: str
+    unit: str
+    record: str
+    time: tuple[float, ...]
+    missing: tuple[float, ...]
+    band: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class FedEquations:
+    """Where the error comes from, the second way: each equation fed with measured signals."""
+
+    smoothing: float
+    """s: window of the local cubics that smooth the signals and bring their derivatives."""
+    average: float
+    """s over which an error is averaged."""
+    equations: tuple[EquationError, ...]
+    beyond_noise: bool
+    """Whether all of them together show more than noise; without it shares say nothing."""
+    curves: tuple[ErrorCurve, ...]
+
+    @property
+    def equation(self) -> str:
+        """The equation with the largest share."""
+        return max(self.equations, key=lambda e: e.share[0]).equation
+
+
+@dataclass(frozen=True)
 class Empirical:
     """The curve of a missing term carried along by the simulation: it predicts better, and explains nothing."""
 
@@ -243,6 +291,8 @@ class Diagnosis:
     remainder: Remainder | None = None
     hidden: Hidden | None = None
     """Where the baseline's error comes from, for rigs that are simulated."""
+    fed: FedEquations | None = None
+    """The same, each equation fed with measured signals."""
     hidden_left: Hidden | None = None
     """The same of what the extended model leaves."""
     empirical: Empirical | None = None
@@ -260,7 +310,7 @@ class Diagnosis:
 
 
 def _without_series(items: list[tuple[str, Any]]) -> dict[str, Any]:
-    return {name: value for name, value in items if name != "series"}
+    return {name: value for name, value in items if name not in ("series", "curves")}
 
 
 def as_json(diagnosis: Diagnosis) -> str:

@@ -1,11 +1,12 @@
-"""Where the error comes from: which equation a hidden term would have to sit in, and the term as a curve."""
+"""Where the error comes from, two ways: hidden terms in the simulation, and each equation fed with measurements."""
 
 from __future__ import annotations
 
-from sms.diagnosis.result import Diagnosis, Hidden, Shape
-from sms.report.markup import Scale, bar, esc, section
+from sms.diagnosis.plant_words import two_ways
+from sms.diagnosis.result import Diagnosis, ErrorCurve, FedEquations, Hidden, Shape
+from sms.report.markup import Scale, bar, esc, section, table
 from sms.report.worth import gain_table
-from sms.units_display import axis_unit, capital, format_percent, words
+from sms.units_display import axis_unit, capital, format_aligned, format_percent, words
 
 WIDTH, HEIGHT, MARGIN = 560, 220, 46
 
@@ -24,7 +25,10 @@ def origin(diagnosis: Diagnosis) -> str:
     left = diagnosis.hidden_left
     if diagnosis.causes and left is not None and left.shape.share > 0.05:
         body += _curve(left.shape, "Of what the extended model leaves")
-    return section("origin", "Where the error comes from", body + _empirical(diagnosis), lead)
+    body += _empirical(diagnosis)
+    if diagnosis.fed is not None:
+        body += _fed(diagnosis.fed, hidden)
+    return section("origin", "Where the error comes from", body, lead)
 
 
 def _empirical(diagnosis: Diagnosis) -> str:
@@ -52,6 +56,70 @@ def _shares(hidden: Hidden) -> str:
     )
     head = "".join(f'<th scope="col">{text}</th>' for text in ("Equation", "", "Takes alone"))
     return f'<table class="shares"><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
+
+
+def _fed(fed: FedEquations, hidden: Hidden) -> str:
+    """The other way: shares, sizes in the equations' own units, and the worst one over time."""
+    lead = (
+        "The other way: nothing is simulated. Each equation is fed with the measured signals, smoothed by local cubics "
+        f"over {1e3 * fed.smoothing:g} ms, and what it leaves is averaged over {1e3 * fed.average:g} ms. Noise is that "
+        "of the signals, carried through. Shares of what is not noise add up here, for an error stays in its equation."
+    )
+    scale = Scale(0.0, 1.0)
+    rows = []
+    for e in sorted(fed.equations, key=lambda e: -e.share[0]):
+        size, noise = format_aligned([e.rms, e.noise], e.unit)
+        share, low, high = e.share
+        rows.append(
+            (
+                esc(capital(words(e.equation))),
+                bar(scale, share, "baseline", (low, high)),
+                esc(format_percent(share)),
+                esc(f"{size} ({noise})"),
+                f"{e.times_noise:.1f}",
+            )
+        )
+    shown = table(
+        "Each equation fed with measured signals",
+        ("Equation", "", "Share", "Off by (noise)", "Times its noise"),
+        rows,
+        "shares",
+    )
+    curves = [c for c in fed.curves if c.equation == fed.equation]
+    figures = "".join(map(_over_time, curves)) if fed.beyond_noise else ""
+    return (
+        f'<div id="fed"><p class="lead">{esc(lead)}</p><p>{esc(two_ways(hidden, fed))}</p>'
+        f"{shown}{figures}</div>"
+    )
+
+
+def _over_time(curve: ErrorCurve) -> str:
+    """The missing term of one record over time, with the band of its noise about zero."""
+    unit = axis_unit(curve.unit)
+    x = curve.time
+    y, band = ([v * unit.factor for v in values] for values in (curve.missing, curve.band))
+    high = max(*map(abs, y), *band, 1e-300)
+    top = 0.5 * HEIGHT - 10
+
+    def at(a: float, b: float) -> str:
+        left = MARGIN + (a - x[0]) / max(x[-1] - x[0], 1e-300) * (WIDTH - 2 * MARGIN)
+        return f"{left:.1f},{0.5 * HEIGHT - b / high * (top - 16):.1f}"
+
+    around = [at(a, b) for a, b in zip(x, band, strict=True)]
+    around += [at(a, -b) for a, b in zip(x[::-1], band[::-1], strict=True)]
+    line = " ".join(at(a, b) for a, b in zip(x, y, strict=True))
+    caption = (
+        f"{capital(words(curve.equation))} in '{curve.record}': the term that is missing over time, {x[0]:.1f} to "
+        f"{x[-1]:.1f} s, and twice its noise about zero."
+    )
+    return (
+        f'<figure class="shape"><svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{esc(caption)}" '
+        'style="max-width:40rem;width:100%">'
+        f'<polygon points="{" ".join(around)}" fill="#88888833"/>'
+        f'<polyline points="{line}" fill="none" stroke="#4477aa" stroke-width="1.5"/>'
+        f'<text x="6" y="14" font-size="12">{esc(words(curve.equation))} [{esc(unit.label)}], '
+        f"{-high:.3g} to {high:.3g}</text></svg><figcaption>{esc(caption)}</figcaption></figure>"
+    )
 
 
 def _curve(shape: Shape, title: str) -> str:
