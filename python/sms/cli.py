@@ -15,6 +15,7 @@ from sms import (
     _core,
     cli_can,
     cli_identify,
+    cli_limits,
     cli_mechanism,
     cli_noise,
     cli_simulate,
@@ -115,6 +116,7 @@ def diagnose(
 
 cli_mechanism.register(app)
 cli_identify.register(app)
+cli_limits.register(app)
 cli_simulate.register(app)
 cli_study.register(app)
 cli_can.register(app)
