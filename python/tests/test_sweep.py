@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from sms.io import InputError
+from sms.report.sweep import sweep_html
 from sms.sweep import load_sweep, run_sweep
 from sms.sweep.run import PARTIAL, WHOLE, evaluate
 from test_cli_diagnose import refused
@@ -64,11 +65,22 @@ def test_distributions_alone_and_grids_alone(tmp_path: Path, kind: str) -> None:
     assert found.values.shape == ((3, 2) if kind == "drawn" else (2, 1))
 
 
-def test_a_tank_has_no_motion_to_sweep(tmp_path: Path) -> None:
-    path = plan(tmp_path)
-    (tmp_path / "scenario.toml").write_text(FLOW_TEST)
-    with pytest.raises(InputError, match="'tank' has no motion to sweep"):
-        load_sweep(path)
+def test_a_larger_tank_takes_longer_in_proportion(tmp_path: Path) -> None:
+    """Behind an open valve the equations hold time over volume alone; the spool opens as long for all."""
+    path = plan(
+        tmp_path,
+        PLAN[: PLAN.index("samples")] + "[vary.tank_volume]\ngrid = ['1 l', '2 l', '3 l']\n",
+    )
+    (tmp_path / "scenario.toml").write_text(FLOW_TEST.replace("[0, 1, -1]", "[1]"))
+    asked = load_sweep(path)
+    results = run_sweep(asked, tmp_path / "out", workers=1)
+    arrival = results["arrival [s]"].to_numpy()
+    assert abs(arrival[2] - 2.0 * arrival[1] + arrival[0]) <= 2.001e-3  # samples of 1 ms
+    assert arrival[1] > 1.9 * arrival[0]
+    assert np.ptp(results["greatest_flow [kg/s]"]) < 1e-2 * results["greatest_flow [kg/s]"].max()
+    assert (results["ended"] == "").all() and not any("roll" in str(name) for name in results)
+    page = sweep_html(asked, results)
+    assert "arrival is shown" in page and "tank volume (rank correlation +1.00)" in page
 
 
 def test_on_two_cores_the_same_as_one_after_the_other(tmp_path: Path) -> None:

@@ -17,14 +17,16 @@ from sms.sweep.plan import Sweep
 from sms.units_display import axis_unit, words
 
 _FIRST = ("roll_largest_error", "pitch_largest_error", "height_largest_error")
-_OTHERS = ("extension_rms_error", "least_stroke")
+_OTHERS = ("extension_rms_error", "least_stroke", "arrival", "greatest_flow")
 
 
 def main_metric(results: pd.DataFrame) -> str:
-    """The column that the page is about: the largest error of the axis that moved most."""
+    """The column that the page is about: the largest error of the axis that moved most; of a tank its arrival."""
     named = {split_column_name(str(name))[0]: str(name) for name in results}
     for name in (*_FIRST, *_OTHERS):
-        column = named[name]
+        column = named.get(name)
+        if column is None:
+            continue
         if results[column].notna().any() and results[column].abs().max() > 0.0:
             return column
     return named["duration"]

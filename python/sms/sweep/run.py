@@ -28,8 +28,9 @@ from sms.parameters import PARAMETERS
 from sms.scenario.command import command_of
 from sms.scenario.files import write_parquet
 from sms.scenario.findings import findings_of
-from sms.scenario.load import scenario_from
+from sms.scenario.load import Scenario, scenario_from
 from sms.scenario.plant import run_scenario
+from sms.scenario.tank import TankRecord, run_tank, tank_findings
 from sms.sweep.plan import Sweep
 
 Progress = Callable[[str, float], None]
@@ -52,6 +53,14 @@ METRICS: Mapping[str, str] = {
     "duration": "s",
 }
 """What is kept of each variant, and its SI unit; NaN where it does not apply."""
+TANK_METRICS: Mapping[str, str] = {
+    "arrival": "s",
+    "greatest_flow": "kg/s",
+    "least_pressure": "Pa",
+    "greatest_pressure": "Pa",
+    "duration": "s",
+}
+"""The same of a tank; arrival: from when on its pressure is within 1 % of where the valve leads."""
 
 
 def run_sweep(
@@ -110,6 +119,8 @@ def evaluate(
     try:
         scenario = scenario_from(tables, Path(path), settings)
         command = command_of(scenario)
+        if scenario.plant == "tank":
+            return _of_tank(scenario, run_tank(scenario, command))
         record = run_scenario(scenario, command)
         if record.time.size < 16:
             return {"ended": record.ended or "too short"}
@@ -130,6 +141,18 @@ def evaluate(
     row["saturated_share"] = findings.saturated
     row["duration"] = float(record.time[-1])
     return row
+
+
+def _of_tank(scenario: Scenario, record: TankRecord) -> dict[str, float | str | None]:
+    found = tank_findings(scenario, record)
+    return {
+        "ended": record.ended,
+        "arrival": found.arrived,
+        "greatest_flow": found.greatest_flow,
+        "least_pressure": found.least_pressure,
+        "greatest_pressure": found.greatest_pressure,
+        "duration": float(record.time[-1]),
+    }
 
 
 def _resumed(sweep: Sweep, partial: Path) -> dict[int, dict[str, Any]]:
@@ -230,7 +253,8 @@ def _table(sweep: Sweep, rows: Mapping[int, Mapping[str, Any]]) -> pd.DataFrame:
     columns: dict[str, Any] = {"variant": np.arange(len(sweep.values))}
     for name, values in zip(sweep.names, sweep.values.T, strict=True):
         columns[f"{name} [{PARAMETERS[name].unit}]"] = values
-    for name, unit in METRICS.items():
+    of_tank = sweep.tables.get("scenario", {}).get("plant") == "tank"
+    for name, unit in (TANK_METRICS if of_tank else METRICS).items():
         numbers = [rows[variant].get(name) for variant in range(len(sweep.values))]
         columns[f"{name} [{unit}]"] = np.array(numbers, dtype=np.float64)
     columns["ended"] = [str(rows[variant]["ended"]) for variant in range(len(sweep.values))]
