@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from io_support import draw
 from numpy.typing import NDArray
 from plant_support import NOISE, pose, setpoint, write_bench
 from sms import Params, _core, extensions_of, simulate_bench, simulate_platform, simulate_tank
@@ -22,6 +21,8 @@ from sms.diagnosis.plant_words import agree, two_ways
 from sms.diagnosis.result import EquationError, FedEquations, Hidden, Shape
 from sms.io import load_rig
 from sms.report.origin import _fed
+
+from validation.random_cases import draw
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 Array = NDArray[np.float64]

@@ -14,12 +14,6 @@ from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
 
-HONEST, HONEST_OF_ONE = 0.15, 0.25
-"""What two honest descriptions of one machine leave, over all channels and of the one that is worst off, as a share of
-the noise floor's mean square: the form in which friction rises from rest, the flow through a valve that is nearly
-closed, noise that lasts. Healthy machines of the trials leave 0.05 to 0.14, and 0.07 to 0.25."""
-LEAST, LEAST_OF_ONE = 0.3, 0.6
-"""The same, below which an error is not worth a word: about twice as much."""
 LEFT = 0.2
 """Of the baseline's excess: with more left, the best explanation is none: it imitates, it does not explain."""
 
@@ -34,6 +28,8 @@ class Excess:
     """Beyond the floor, on the records that were fitted."""
     validate: Array
     """The same on those that were not."""
+    honest: tuple[float, float]
+    """What two honest descriptions of one machine leave (kind.Kind.honest)."""
 
     @property
     def total(self) -> float:
@@ -47,15 +43,15 @@ class Excess:
 
 
 def small(excess: Excess) -> bool:
-    """Whether an error is not worth a word."""
-    return excess.total < LEAST and excess.worst < LEAST_OF_ONE
+    """Whether an error is not worth a word: less than twice what honest descriptions leave."""
+    total, worst = excess.honest
+    return excess.total < 2.0 * total and excess.worst < 2.0 * worst
 
 
 def explained(before: Excess, after: Excess) -> bool:
     """Whether hardly more is left than any honest description leaves."""
-    return after.total <= _bar(before.total, HONEST) and after.worst <= _bar(
-        before.worst, HONEST_OF_ONE
-    )
+    total, worst = before.honest
+    return after.total <= _bar(before.total, total) and after.worst <= _bar(before.worst, worst)
 
 
 def _bar(before: float, honest: float) -> float:
@@ -67,7 +63,8 @@ def excess_of(fitted: Fitted, data: Data) -> Excess:
     assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
     seen, unseen = fitted.fit.residual, refitted(fitted, data).fit.residual
     floor = 0.5 * (data.identify.floor(seen) + data.validate.floor(unseen))
-    return Excess(floor, _beyond(seen, data.identify, floor), _beyond(unseen, data.validate, floor))
+    parts = _beyond(seen, data.identify, floor), _beyond(unseen, data.validate, floor)
+    return Excess(floor, *parts, data.identify.kind.honest)
 
 
 def _beyond(residual: Array, runs: Runs, floor: Array) -> Array:

@@ -95,7 +95,7 @@ def fit_windows(problem: Problem, initial: _core.Params, free: list[Free]) -> Wi
     converged = not free
     for _ in range(MOST_STEPS if free else 0):
         here = cost(residual, value)
-        little = ENOUGH + _share(here / len(residual)) * here
+        little = ENOUGH + _worthless(residual, jacobian)
         slope = jacobian * scale
         step = _linear_step(slope, residual, pull, value - centre, lower - value, upper - value)
         promised = here - cost(residual + slope @ step, value + step)
@@ -123,9 +123,14 @@ def fit_windows(problem: Problem, initial: _core.Params, free: list[Free]) -> Wi
     return WindowFit(at(value), np.asarray(residual), np.asarray(jacobian), held, converged)
 
 
-def _share(per_row: float) -> float:
-    """Of chi-square, what is next to nothing for a model that leaves so much a row."""
-    return min(max(LEAST_SHARE, 0.1 * MOST_SHARE * (per_row - 1.0)), MOST_SHARE)
+def _worthless(residual: Array, jacobian: Array) -> float:
+    """Of chi-square, what is next to nothing for a model that leaves so much where it has a slope at all."""
+    felt = residual[np.any(jacobian != 0.0, axis=1)]
+    if not felt.size:
+        return 0.0
+    left = float(felt @ felt)
+    share = 0.1 * MOST_SHARE * (left / felt.size - 1.0)
+    return min(max(LEAST_SHARE, share), MOST_SHARE) * left
 
 
 def _linear_step(

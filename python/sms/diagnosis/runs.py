@@ -76,10 +76,14 @@ class Runs:
         return tuple(s for s in self.kind.outputs if all(s in m.signals for m in self.motions))
 
     @cached_property
+    def simulation(self) -> WindowProblem:
+        """The records as the core's problem."""
+        return self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+
+    @cached_property
     def problem(self) -> WindowProblem:
-        return WithinNumbers(
-            self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
-        )
+        """The same where it does not run away."""
+        return WithinNumbers(self.simulation)
 
     @cached_property
     def record(self) -> Index:

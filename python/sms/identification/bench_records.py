@@ -46,7 +46,7 @@ class BenchRecords:
     @property
     def problem(self) -> _core.BenchProblem:
         """The records to identify with, as the core's problem."""
-        problem = self.identify.problem
+        problem = self.identify.simulation
         assert isinstance(problem, _core.BenchProblem)
         return problem
 
