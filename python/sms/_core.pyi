@@ -2358,10 +2358,12 @@ class PlatformRecord:
         ...
 class PlatformProblem:
     """
-    Prediction errors over windows, in units of the noise.
+    Prediction errors over windows, in units of the noise: for each sample of a window, each output.
     """
     def __init__(self, *, records: collections.abc.Sequence[PlatformRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', masses: typing.SupportsInt | typing.SupportsIndex = 0, window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.0025, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
-        ...
+        """
+        noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, N, and flows into the three lower and the three upper chambers, kg/s.
+        """
     def errors(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         (rows,): predicted less measured over the noise, at the best initial states.
@@ -2372,7 +2374,7 @@ class PlatformProblem:
         """
     def hidden(self, params: LegParams, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (rows, 9 knots): derivatives against hidden forces on the three pistons and hidden flows into the three lower and the three upper chambers, in each window.
+        (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
     def settle(self, params: LegParams) -> None:
         """
