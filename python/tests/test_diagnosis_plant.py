@@ -105,10 +105,13 @@ def test_screening_finds_the_column_that_is_there_and_none_where_there_is_none()
     footprint = project(free, columns, [f"c{k}" for k in range(30)])
     basis = free.basis()
     allowed = np.ones((30, 2), dtype=np.bool_)
-    noise = random.normal(size=n)
-    noise -= (basis @ (basis.T @ np.concatenate([noise, np.zeros(2)])))[:n]
-    quiet = screen(footprint, free, noise, blocks, allowed, random)
-    assert quiet.p_value.min() > 0.001
+    alarms = 0
+    for _ in range(20):
+        noise = random.normal(size=n)
+        noise -= (basis @ (basis.T @ np.concatenate([noise, np.zeros(2)])))[:n]
+        quiet = screen(footprint, free, noise, blocks, allowed, random)
+        alarms += int(quiet.p_value.min() <= 0.05)
+    assert alarms <= 8  # one is expected; nine or more come once in five million runs
     loud = screen(footprint, free, noise - 0.5 * footprint[:n, 7], blocks, allowed, random)
     assert int(np.argmax(loud.gain)) == 7
     assert loud.p_value[7] <= 0.002

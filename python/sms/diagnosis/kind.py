@@ -143,6 +143,6 @@ class Kind:
     short: float = 0.025
     """s: what differs over this time is noise; what lasts longer a model could explain."""
     honest: tuple[float, float] = (0.15, 0.3)
-    """What two honest descriptions of one machine leave, as a share of the noise floor's mean square: over all outputs, and
-    of the one that is worst off. The form in which friction rises from rest, the flow through a valve that is nearly
-    closed, noise that lasts. Healthy machines of the trials leave 0.05 to 0.14, and 0.07 to 0.25."""
+    """What two honest descriptions of one machine leave, as a share of the noise floor's mean square: over all outputs,
+    and of the one that is worst off. The form in which friction rises from rest, the flow through a valve that is
+    nearly closed, noise that lasts. Healthy machines of the trials leave 0.05 to 0.14, and 0.07 to 0.25."""
