@@ -4,6 +4,7 @@
 
 #include "estimation/jets.hpp"
 #include "estimation/measured_actuator.hpp"
+#include "estimation/tank_plant.hpp"
 
 namespace sms {
 namespace estimation {
@@ -71,9 +72,8 @@ void TankEquations::errors(Params<S> params, S* out) const {
       return;
     }
     reservoir = reservoir_after<S>(p, reservoir, t.feed, step);
-    const S thin = now.value > S(1e3) ? now.value : S(1e3);
-    const S exchange = p.gas_constant * p.air_temperature * (t.flow.in + t.flow.out) / (thin * t.space.volume);
-    state.gas.temperature += S(step) * rate.gas.temperature / (S(1) + S(step) * exchange);
+    const detail::TankStiffness<S> stiff = detail::tank_stiffness(p, state, t);
+    state.gas.temperature += S(step) * rate.gas.temperature / (S(1) - S(step) * stiff.temperature);
     couple.step(seen, tank_air(tank, state.gas).temperature);
   }
 }
