@@ -1,10 +1,11 @@
 // The rig "bench" as a plant of shooting.hpp: one actuator, its command, extension and chamber pressures measured.
 //
 // A window starts with what is free: extension, velocity, both pressures, the reservoir's pressure, the deflection of the
-// seals, and by how much the air in both chambers is warmer than the supplied. The spool needs none of it: it follows the command alone, and is run up over the 50 ms before the window.
+// seals, and by how much the air in both chambers is warmer than the supplied. The spool needs none of it: it follows the
+// command alone, and is run up over the 50 ms before the window.
 #pragma once
 
-#include "estimation/actuator_step.hpp"
+#include "estimation/bench_rates.hpp"
 #include "estimation/shooting.hpp"
 
 namespace sms {
@@ -101,22 +102,21 @@ template <typename S>
 void BenchPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
                           int knots) const {
   const BenchRecord& record = of(window.record);
-  Bench<S> bench{params, laws_};
+  Params<S> in_this_run = params;
   for (const auto& condition : record.conditions) {
-    param(bench.params, condition.first) += S(condition.second);
+    param(in_this_run, condition.first) += S(condition.second);
   }
-  const Params<S>& p = bench.params;
+  const BenchRates<S> rate_of(in_this_run, laws_);
+  const Params<S>& p = rate_of.params();
   const bool droops = p.supply_line_resistance > S(0);
   const double sample = record.step;
   const int steps = std::max(1, static_cast<int>(std::ceil(sample / longest_step_ - 1e-9)));
   const S h(sample / steps);
   const S late = p.command_delay / S(sample);
 
-  BenchState<S> state = bench_at_rest(bench, start[0], S(0), S(2e5));
+  BenchState<S> state = bench_at_rest(rate_of.bench(), start[0], S(0), S(2e5));
   state.velocity = start[1];
-  const bool partly_warm = detail::is_partly_warm(p, laws_);
-  const Bench<S> warm_bench{partly_warm ? detail::partly_warm(p) : p, laws_};
-  const bool warm = partly_warm || laws_.chamber == ChamberLaw::energy;
+  const bool warm = rate_of.is_warm();
   state.actuator.lower = {start[2], warm ? S(p.air_temperature + start[6]) : p.air_temperature};
   state.actuator.upper = {start[3], warm ? S(p.air_temperature + start[7]) : p.air_temperature};
   state.actuator.supply_pressure = droops ? start[4] : p.supply_pressure;
@@ -137,19 +137,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
     rate.actuator.upper.pressure += value(2) * p.gas_constant * p.air_temperature / t.actuator.upper.volume;
   };
   const auto rates = [&](double at, const BenchState<S>& y, const S& film, BenchState<S>& rate) {
-    const BenchInput<S> input{detail::command_at<S>(record.command, S(window.first + at) - late), S(0)};
-    if (partly_warm) {
-      BenchState<S> seen = y;
-      seen.actuator = detail::partly_warm(p, y.actuator);
-      derivative(warm_bench, seen, input, t, rate);
-      detail::add_heat(p, y.actuator.lower, t.actuator.lower, t.actuator.flow.lower, rate.actuator.lower);
-      detail::add_heat(p, y.actuator.upper, t.actuator.upper, t.actuator.flow.upper, rate.actuator.upper);
-    } else {
-      derivative(bench, y, input, t, rate);
-    }
-    rate.velocity -= detail::seal_deviation(p, t.actuator.piston, t.balance.friction, y.actuator.deflection, film,
-                                            &rate.actuator.deflection) /
-                     p.moving_mass;
+    rate_of(y, detail::command_at<S>(record.command, S(window.first + at) - late), film, t, rate);
     push(at, rate);
   };
   const bool film_is_late = !is_absent(p.friction_lag);

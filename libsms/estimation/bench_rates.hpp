@@ -15,6 +15,7 @@ class BenchRates {
         partly_warm_(detail::is_partly_warm(p, laws)),
         warm_{partly_warm_ ? detail::partly_warm(p) : p, laws} {}
 
+  const Bench<S>& bench() const { return bench_; }
   const Params<S>& params() const { return bench_.params; }
   const ActuatorLaws& laws() const { return bench_.laws; }
   // Whether temperatures are states.
