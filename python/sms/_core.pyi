@@ -729,7 +729,7 @@ class Params:
     @property
     def heat_share(self) -> float:
         """
-        heat_transfer: from a tank that keeps its temperature (0) to the full energy equation with heat through the wall (1) [1]; neutral
+        heat_transfer: from air that follows the polytropic law, in a tank at constant temperature (0), to the full energy equation with heat through the wall (1) [1]; neutral
         """
     @heat_share.setter
     def heat_share(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
