@@ -37,6 +37,8 @@ MOST_FITS = 5
 """Effects of a round that are fitted in full, where a fit is a simulation of every record."""
 WORTH_A_FIT = 0.3
 """Of the chi-square that the most promising effect would take: what an effect must promise to be fitted."""
+FAR = 10.0
+"""Chi-square per row from which less has to be promised: a linear step says little of a way that is long."""
 ALIKE = 0.95
 """Cosine of two footprints in the data above which two effects cannot be told apart by them."""
 WORTH_A_LOOK = 0.8
@@ -111,10 +113,12 @@ def _try_on_runs(
     room = np.array([_room(e, current, data.rig) for e in effects])
     promise = found.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     before = unseen(current, data) ** 2
+    here = float(np.sum(current.fit.residual**2))
+    share = WORTH_A_FIT * min(1.0, FAR * len(current.fit.residual) / max(here, 1e-300))
     promising = [
         int(k)
         for k in np.argsort(-promise)[:MOST_FITS]
-        if found.p_value[k] <= SIGNIFICANT and promise[k] > WORTH_A_FIT * promise.max()
+        if found.p_value[k] <= SIGNIFICANT and promise[k] > share * promise.max()
     ]
     # What a step promises may be little where the way is long, as from a volume ten times too large.
     promising += [
@@ -132,7 +136,6 @@ def _try_on_runs(
         )
         for k in promising
     }
-    here = float(np.sum(current.fit.residual**2))
     taken = {k: here - float(np.sum(f.fit.residual**2)) for k, f in fits.items()}
     cosine = found.cosine
     trials = []
