@@ -5,6 +5,7 @@
 // command alone, and is run up over the 50 ms before the window.
 #pragma once
 
+#include "estimation/actuator_sensors.hpp"
 #include "estimation/bench_rates.hpp"
 #include "estimation/shooting.hpp"
 
@@ -52,8 +53,8 @@ class BenchPlant {
 
   // Writes the whitened errors of one sample and returns where the next begin.
   template <typename S>
-  S* readings(const Params<S>& p, const BenchRecord& record, int sample, const BenchState<S>& state,
-              const BenchState<S>& rate, const S& force, S* out) const;
+  S* readings(const Params<S>& p, const BenchRecord& record, int sample, const ActuatorSensors<S>& sensors,
+              const BenchState<S>& state, const BenchState<S>& rate, S* out) const;
 
   // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
   template <typename S>
@@ -70,26 +71,17 @@ class BenchPlant {
 };
 
 template <typename S>
-S* BenchPlant::readings(const Params<S>& p, const BenchRecord& record, int sample, const BenchState<S>& state,
-                        const BenchState<S>& rate, const S& force, S* out) const {
+S* BenchPlant::readings(const Params<S>& p, const BenchRecord& record, int sample, const ActuatorSensors<S>& sensors,
+                        const BenchState<S>& state, const BenchState<S>& rate, S* out) const {
   const auto error = [sample](const S& predicted, const Eigen::VectorXd& measured, int samples, double noise) {
     return detail::reading_error(predicted, measured, sample + samples, noise);
   };
   S rest;
   const int late = detail::whole_samples(record.step, p.clock_skew_extension, &rest);
-  const S x = seen_extension(p, state.extension, state.velocity, force);
-  const S x_late = late_reading<S>(x, state.velocity, rest + p.sensor_lag_extension);
-  *out++ = error(sensor_reading(x_late, p.sensor_gain_extension, p.sensor_offset_extension), record.extension, late,
-                 noise_.extension);
+  *out++ = error(sensors.extension_reading(p, state, rest), record.extension, late, noise_.extension);
   const int late_p = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-  const S lower = late_reading<S>(state.actuator.lower.pressure, rate.actuator.lower.pressure,
-                                  rest + p.sensor_lag_chamber_pressure_lower);
-  *out++ = error(sensor_reading(lower, p.sensor_gain_chamber_pressure_lower, p.sensor_offset_chamber_pressure_lower),
-                 record.pressure_lower, late_p, noise_.pressure_lower);
-  const S upper = late_reading<S>(state.actuator.upper.pressure, rate.actuator.upper.pressure,
-                                  rest + p.sensor_lag_chamber_pressure_upper);
-  *out++ = error(sensor_reading(upper, p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper),
-                 record.pressure_upper, late_p, noise_.pressure_upper);
+  *out++ = error(sensors.lower_reading(p, state, rate, rest), record.pressure_lower, late_p, noise_.pressure_lower);
+  *out++ = error(sensors.upper_reading(p, state, rate, rest), record.pressure_upper, late_p, noise_.pressure_upper);
   if (record.supply_pressure.size() > 0) {
     *out++ = error(
         sensor_reading(state.actuator.supply_pressure, p.sensor_gain_supply_pressure, p.sensor_offset_supply_pressure),
@@ -145,17 +137,20 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   const auto film_at = [&](const S& speed) {
     return film_is_late ? detail::lagging(film, state.velocity, speed, p.friction_lag, h) : speed;
   };
+  ActuatorSensors<S> sensors(p, h);
   const S g = S(detail::kStiffShare) * h;
   const auto x = vector_of(state);
   for (int k = 0;; ++k) {
     rates(k, state, film, k1);
-    residual = readings<S>(p, record, window.first + k, state, k1, t.actuator.force - t.balance.friction, residual);
+    sensors.follow(p, state, k1, t.actuator.force - t.balance.friction);
+    residual = readings<S>(p, record, window.first + k, sensors, state, k1, residual);
     if (k == window.samples - 1) {
       return;
     }
     for (int i = 0; i < steps; ++i) {
       if (i > 0) {
         rates(k + double(i) / steps, state, film, k1);
+        sensors.follow(p, state, k1, t.actuator.force - t.balance.friction);
       }
       const detail::ActuatorStiffness<S> stiff =
           detail::actuator_stiffness(p, laws_.friction, p.moving_mass, t.actuator);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "estimation/platform_rates.hpp"
+#include "estimation/platform_sensors.hpp"
 #include "estimation/recorded.hpp"
 #include "estimation/shooting.hpp"
 
@@ -80,8 +81,9 @@ class PlatformPlant {
   MeasuredMotion motion(const Params<double> (&leg)[3], const Window& window) const;
 
   template <typename S>
-  S* readings(const LegMachines<S>& machines, const PlatformRecord& record, int sample, const PathPoint<S>& place,
-              const Pistons<S>& state, const Pistons<S>& rate, const PistonTerms<S>& t, S* out) const;
+  S* readings(const LegMachines<S>& machines, const PlatformRecord& record, int sample,
+              const PlatformSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state,
+              const Pistons<S>& rate, S* out) const;
 
   std::vector<PlatformRecord> records_;
   std::vector<MeasuredMotion> measured_;  // one a record, smoothed
@@ -93,36 +95,28 @@ class PlatformPlant {
 
 template <typename S>
 S* PlatformPlant::readings(const LegMachines<S>& machines, const PlatformRecord& record, int sample,
-                           const PathPoint<S>& place, const Pistons<S>& state, const Pistons<S>& rate,
-                           const PistonTerms<S>& t, S* out) const {
+                           const PlatformSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state,
+                           const Pistons<S>& rate, S* out) const {
   const auto error = [sample](const S& predicted, const auto& measured, int samples, double noise) {
     return detail::reading_error(predicted, measured, sample + samples, noise);
   };
   S rest;
   for (int i = 0; i < 3; ++i) {
     const Params<S>& p = machines.leg[i];
-    const BenchState<S>& leg = state.leg[i];
     const int late = detail::whole_samples(record.step, p.clock_skew_extension, &rest);
-    // The sensor sits on the cylinder, and sees more of the rod where the frame yields below it.
-    const S seen = seen_extension<S>(p, leg.extension, leg.velocity, t.friction(i) - t.actuator[i].force);
-    const S x = late_reading<S>(seen, leg.velocity, rest + p.sensor_lag_extension);
-    *out++ = error(sensor_reading(x, p.sensor_gain_extension, p.sensor_offset_extension),
+    *out++ = error(sensors.leg[i].extension_reading(p, state.leg[i], rest),
                    record.extension[static_cast<std::size_t>(i)], late, noise_.extension(i));
   }
   for (int i = 0; i < 3; ++i) {
     const Params<S>& p = machines.leg[i];
     const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-    const S lower = late_reading<S>(state.leg[i].actuator.lower.pressure, rate.leg[i].actuator.lower.pressure,
-                                    rest + p.sensor_lag_chamber_pressure_lower);
-    *out++ = error(sensor_reading(lower, p.sensor_gain_chamber_pressure_lower, p.sensor_offset_chamber_pressure_lower),
+    *out++ = error(sensors.leg[i].lower_reading(p, state.leg[i], rate.leg[i], rest),
                    record.pressure_lower[static_cast<std::size_t>(i)], late, noise_.pressure_lower(i));
   }
   for (int i = 0; i < 3; ++i) {
     const Params<S>& p = machines.leg[i];
     const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-    const S upper = late_reading<S>(state.leg[i].actuator.upper.pressure, rate.leg[i].actuator.upper.pressure,
-                                    rest + p.sensor_lag_chamber_pressure_upper);
-    *out++ = error(sensor_reading(upper, p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper),
+    *out++ = error(sensors.leg[i].upper_reading(p, state.leg[i], rate.leg[i], rest),
                    record.pressure_upper[static_cast<std::size_t>(i)], late, noise_.pressure_upper(i));
   }
   const Params<S>& p = machines.common;
@@ -132,15 +126,9 @@ S* PlatformPlant::readings(const LegMachines<S>& machines, const PlatformRecord&
                    record.supply_pressure, 0, noise_.supply_pressure);
   }
   if (record.roll.size() > 0) {
-    Vec3<S> aside, speed;
-    for (int i = 0; i < 3; ++i) {
-      aside(i) = state.leg[i].extension - place.extension(i);
-      speed(i) = state.leg[i].velocity;
-    }
-    const Vec3<S> q = place.q + place.to_pose * aside, q_rate = place.to_pose * speed;
+    const PoseSeen<S> q = pose_seen(place, state);
     const int late = detail::whole_samples(record.step, p.clock_skew_attitude, &rest);
-    const S roll = late_reading<S>(q(0), q_rate(0), rest + p.sensor_lag_roll);
-    const S pitch = late_reading<S>(q(1), q_rate(1), rest + p.sensor_lag_pitch);
+    const S roll = sensors.roll.at(q.pose(0), q.rate(0), rest), pitch = sensors.pitch.at(q.pose(1), q.rate(1), rest);
     *out++ =
         error(sensor_reading(roll, p.sensor_gain_roll, p.sensor_offset_roll), record.roll, late, noise_.attitude(0));
     *out++ = error(sensor_reading(pitch, p.sensor_gain_pitch, p.sensor_offset_pitch), record.pitch, late,
@@ -206,11 +194,13 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
     piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y, command, films,
                     hidden != nullptr ? push : nullptr, t, rate);
   };
+  PlatformSensors<S> sensors(machines, h);
   const auto x = vector_of(state);
   for (int k = 0;; ++k) {
     rates_at(k, 0.0, state, film, k1);
     const PathPoint<S>& place = path.points[static_cast<std::size_t>(k)];
-    residual = readings<S>(machines, record, window.first + k, place, state, k1, t, residual);
+    sensors.follow(machines, place, state, k1, t);
+    residual = readings<S>(machines, record, window.first + k, sensors, place, state, k1, residual);
     if (k == window.samples - 1) {
       return;
     }
@@ -218,6 +208,7 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
       const double begin = double(step) / steps;
       if (step > 0) {
         rates_at(k, begin, state, film, k1);
+        sensors.follow(machines, place_between<S>(path.points, k, begin), state, k1, t);
       }
       detail::ActuatorStiffness<S> stiff[3];
       for (int i = 0; i < 3; ++i) {

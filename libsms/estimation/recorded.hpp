@@ -64,15 +64,28 @@ struct FollowingSensor {
       weight = low_pass_weight<S>(S(1) / lag, h);
     }
   }
-  S at(const S& truth, const S& rate) const { return follows ? reading : late_reading<S>(truth, rate, lag); }
+  // The reading, `rest` seconds ago besides.
+  S at(const S& truth, const S& rate, const S& rest = S(0)) const {
+    return follows ? late_reading<S>(reading, (truth - reading) / lag, rest) : late_reading<S>(truth, rate, rest + lag);
+  }
   void step(const S& from, const S& to) {
     if (follows) {
       reading = low_pass_ramp_step<S>(S(1) / lag, h, weight, reading, from, to);
     }
   }
+  // The truth a step after the last call; at the first it is taken to have been rising like this for long.
+  void follow(const S& truth, const S& rate) {
+    if (!follows) {
+      return;
+    }
+    reading = begun ? low_pass_ramp_step<S>(S(1) / lag, h, weight, reading, before, truth)
+                    : late_reading<S>(truth, rate, lag);
+    before = truth;
+    begun = true;
+  }
 
-  S lag, h, reading{0}, weight{0};
-  bool follows = false;
+  S lag, h, reading{0}, weight{0}, before{0};
+  bool follows = false, begun = false;
 };
 
 // Predicted less measured over the noise, against the reading `late` samples later: there the late clock has this

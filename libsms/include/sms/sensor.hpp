@@ -8,7 +8,8 @@
 // y - tau y'; whole samples of a clock are taken by the index. Effects, absent at zero: sensor_lag, clock_skew.
 //
 // What stands between the piston and a position sensor: a mount that yields under the force (frame_compliance) and play
-// at the rod's eye (backlash, half of it each way).
+// at the rod's eye (backlash). Play has a memory: the sensor is pushed by one side of the eye or the other, and rests
+// while the rod crosses the gap.
 #pragma once
 
 #include "sms/friction.hpp"
@@ -31,10 +32,23 @@ S late_reading(const S& value, const S& rate, const S& late) {
   return value - late * rate;
 }
 
-// What a position sensor sees of the piston; `force` is that of the cylinder on its mount, N.
+// What a position sensor sees of the piston beside its mount; `force` is that of the cylinder on it, N.
+template <typename S>
+S yielded_extension(const Params<S>& p, const S& extension, const S& force) {
+  return extension - p.frame_compliance * force;
+}
+
+// The same through the play, while the piston goes on at this velocity: half of the play behind.
 template <typename S>
 S seen_extension(const Params<S>& p, const S& extension, const S& velocity, const S& force) {
-  return extension - p.frame_compliance * force - S(0.5) * p.backlash * friction_ramp(velocity, p.stiction_velocity);
+  return yielded_extension(p, extension, force) - S(0.5) * p.backlash * friction_ramp(velocity, p.stiction_velocity);
+}
+
+// Where the sensor is when the eye it was at `before` has come to `now`.
+template <typename S>
+S played(const S& before, const S& now, const S& backlash) {
+  const S half = S(0.5) * backlash;
+  return before < now - half ? S(now - half) : before > now + half ? S(now + half) : before;
 }
 
 }  // namespace sms
