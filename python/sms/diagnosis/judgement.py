@@ -9,6 +9,7 @@ import numpy as np
 
 from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.diagnosis.result import Array
+from sms.diagnosis.runs import Runs
 from sms.diagnosis.search import ALIKE, SIGNIFICANT, Trial
 from sms.diagnosis.statistics import interval, resampled, sum_by, weighted_ms
 from sms.parameters import common_parameter
@@ -122,7 +123,8 @@ TELLS_APART = 3.0
 TELLS_ALIKE_APART = 0.05
 """Of the chi-square that the best takes: what one that looks alike must leave more, besides, to be out.
 
-A machine differs from any model of it, and a small part of that falls in the direction in which two rivals differ.
+A machine differs from any model of it, and a small part of that falls in the direction in which two rivals differ. But
+not more than the best leaves, or any honest description of a machine would: where that is less, it is enough.
 """
 
 
@@ -132,16 +134,33 @@ def _best_of_runs(accepted: Sequence[Trial], current: Fitted, data: Data) -> lis
     left = {t.effect.key: by_window(t.identified, t.squared, data) for t in accepted}
     best = min(accepted, key=lambda t: float(left[t.effect.key].sum()))
     before = by_window(current.fit.residual**2, unseen(current, data) ** 2, data)
-    taken = float(before.sum() - left[best.effect.key].sum())
+    least = least_difference(float(before.sum()), best.fitted, data)
     members = []
     for trial in accepted:
+        alike = best.similarity[trial.effect.key] > ALIKE
         worse = left[trial.effect.key] - left[best.effect.key]
-        scatter = float(np.std(worse) * np.sqrt(len(worse)))
-        told_apart = float(worse.sum()) > TELLS_APART * scatter
-        if best.similarity[trial.effect.key] > ALIKE:
-            told_apart = told_apart and float(worse.sum()) > TELLS_ALIKE_APART * taken
-        else:
-            told_apart = told_apart or trial.gain < 0.9 * best.gain
-        if trial is best or not told_apart:
+        out = told_apart(worse, least if alike else 0.0)
+        if not alike:
+            out = out or trial.gain < 0.9 * best.gain
+        if trial is best or not out:
             members.append(trial)
     return sorted(members, key=lambda t: t is not best)
+
+
+def told_apart(worse: Array, least: float) -> bool:
+    """Whether a rival leaves more than the best, from the differences of chi-square (windows,), and by `least`."""
+    scatter = float(np.std(worse) * np.sqrt(len(worse)))
+    return float(worse.sum()) > max(TELLS_APART * scatter, least)
+
+
+def least_difference(before: float, best: Fitted, data: Data) -> float:
+    """Of chi-square, what tells two apart that look alike; `before` is chi-square without either."""
+    left, honest = 0.0, 0.0
+    seen = (data.identify, best.fit.residual), (data.validate, unseen(best, data))
+    for runs, residual in seen:
+        assert isinstance(runs, Runs)
+        noise = float(np.sum(runs.floor(residual)[runs.channel]))
+        honest += runs.kind.honest[0] * noise
+        left += float(np.sum(residual**2)) - noise
+    after = sum(float(np.sum(residual**2)) for _, residual in seen)
+    return min(TELLS_ALIKE_APART * (before - after), max(left, honest))

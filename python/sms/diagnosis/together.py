@@ -3,7 +3,8 @@
 A round names what explains most alone, while all that later rounds will find is still in the data. A rival that was as
 good then may be out once the others are in the model, and a cause may turn out to have stood in for two others. So each
 cause is taken out in turn: if the rest explain the records without it, it is dropped; else its rivals are fitted in its
-place, and compared as in a round.
+place, and compared as in a round. And two that were found where one would do, a late command and a late pressure for a
+late position, give way to a rival of one of them that needs no other.
 """
 
 from __future__ import annotations
@@ -16,9 +17,14 @@ from sms import _core
 from sms.diagnosis.catalogue import Effect
 from sms.diagnosis.gauss_newton import changed
 from sms.diagnosis.hypothesis import Data, Fitted, fit, unseen
-from sms.diagnosis.judgement import TELLS_APART, WORTH_OF_LEFT, by_window
+from sms.diagnosis.judgement import (
+    WORTH_OF_LEFT,
+    by_window,
+    least_difference,
+    told_apart,
+)
 from sms.diagnosis.result import Array
-from sms.diagnosis.search import Trial
+from sms.diagnosis.search import ALIKE, Trial
 
 NEARLY = 0.9
 """Of what the best of the rivals takes: what a rival has to take."""
@@ -35,6 +41,16 @@ def judged_together(
     final = classes[-1][0].fitted
     if len(classes) < 2:
         return list(classes), final
+    kept, final = _in_presence(classes, final, baseline, data)
+    while (fewer := _fewer(kept, final, baseline, data)) is not None:
+        kept, final = _in_presence(*fewer, baseline, data)
+    return kept, final
+
+
+def _in_presence(
+    classes: Sequence[list[Trial]], final: Fitted, baseline: Fitted, data: Data
+) -> tuple[list[list[Trial]], Fitted]:
+    """One cause after the other taken out and judged again."""
     kept, original = list(classes), _left(baseline, data).sum()
     for members in classes:
         place = next(i for i, c in enumerate(kept) if c is members)
@@ -44,21 +60,51 @@ def judged_together(
         tried = [(m, _model([*others, m.effect], baseline, _near(final, m), data)) for m in rivals]
         best, fitted = _best(tried, data) if tried else (None, without)
         left, alone = _left(fitted, data).sum(), _left(without, data).sum()
-        idle = alone - left < min(IDLE * (original - left), WORTH_OF_LEFT * alone)
-        if best is None or idle:
+        if best is None or _idle(alone, left, original):
             kept.pop(place)
             final = without
             continue
         final = fitted
+        least = least_difference(alone, final, data)
         as_good = [
             _in_place(m, fitted, data)
             for m, fitted in tried
             if m is not best
-            and not _told_apart(fitted, final, data)
+            and not told_apart(
+                _left(fitted, data) - _left(final, data),
+                least if best.similarity[m.effect.key] > ALIKE else 0.0,
+            )
             and alone - _left(fitted, data).sum() >= NEARLY * (alone - left)
         ]
         kept[place] = [_in_place(best, final, data), *as_good]
     return kept, final
+
+
+def _fewer(
+    classes: Sequence[list[Trial]], final: Fitted, baseline: Fitted, data: Data
+) -> tuple[list[list[Trial]], Fitted] | None:
+    """The classes without one that is idle once a rival stands in another's place, and their model; None if none is."""
+    original, left = _left(baseline, data).sum(), _left(final, data).sum()
+    for gone in classes:
+        kept = [c for c in classes if c is not gone]
+        tried = []
+        for members in kept:
+            others = [c[0].effect for c in kept if c is not members]
+            tried += [
+                (m, _model([*others, m.effect], baseline, _near(final, m), data))
+                for m in members[1:]
+                if m.effect not in others
+            ]
+        if tried:
+            _, fitted = _best(tried, data)
+            if _idle(_left(fitted, data).sum(), left, original):
+                return kept, fitted
+    return None
+
+
+def _idle(without: float, left: float, original: float) -> bool:
+    """Whether a cause takes next to nothing: chi-square without it, with it, and of the baseline."""
+    return without - left < min(IDLE * (original - left), WORTH_OF_LEFT * without)
 
 
 def _near(final: Fitted, rival: Trial) -> _core.Params:
@@ -84,13 +130,6 @@ def _left(fitted: Fitted, data: Data) -> Array:
 
 def _best(tried: Sequence[tuple[Trial, Fitted]], data: Data) -> tuple[Trial, Fitted]:
     return min(tried, key=lambda t: float(_left(t[1], data).sum()))
-
-
-def _told_apart(worse: Fitted, better: Fitted, data: Data) -> bool:
-    difference = _left(worse, data) - _left(better, data)
-    return float(difference.sum()) > TELLS_APART * float(
-        np.std(difference) * np.sqrt(len(difference))
-    )
 
 
 def _in_place(member: Trial, fitted: Fitted, data: Data) -> Trial:
