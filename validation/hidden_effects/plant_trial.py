@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 from sms.diagnosis.catalogue import effects_of
 from sms.diagnosis.method import read_and_check
-from sms.diagnosis.plant import found_value, investigate, make_data
+from sms.diagnosis.plant import investigate, make_data
+from sms.diagnosis.size import found_value
 from sms.io.rig import load_rig
 
 from validation.hidden_effects.machines import effects

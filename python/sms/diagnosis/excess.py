@@ -14,8 +14,12 @@ from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
 
-LEFT = 0.2
-"""Of the baseline's excess: with more left, the best explanation is none: it imitates, it does not explain."""
+LEFT = 0.1
+"""Of the baseline's excess: with more left, the best explanation is none: it imitates, it does not explain.
+
+Over blind trials a cause that is right leaves 1 percent in the median and 9 at the most, where the law of the hidden
+effect has another form than the core's.
+"""
 
 
 @dataclass(frozen=True)

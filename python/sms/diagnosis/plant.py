@@ -51,8 +51,8 @@ from sms.diagnosis.result import (
 )
 from sms.diagnosis.rounds import Outcome, Progress, find_causes
 from sms.diagnosis.runs import Runs, make_run, noise_of
-from sms.diagnosis.screening import Nuisance, columns_of, project
 from sms.diagnosis.search import Trial
+from sms.diagnosis.size import OtherLaw, found_value, other_law, record_by_record
 from sms.diagnosis.visible import testable
 from sms.io.errors import InputError
 from sms.io.records import Record
@@ -72,6 +72,8 @@ class Case:
     verdict: Verdict
     contradiction: Contradiction | None = None
     """With the verdict data-fault."""
+    other_law: OtherLaw | None = None
+    """What speaks against the nearest explanation, with the verdict unknown."""
 
     def where(self, rng: np.random.Generator) -> Hidden:
         """Which equation the baseline's error comes from, by hidden inputs in the simulation."""
@@ -149,6 +151,10 @@ def investigate(
     )
     after = excess_of(outcome.final, data)
     verdict = decide(outcome, before, after)
+    laws = [other_law(outcome.final, members[0].effect, data) for members in outcome.found]
+    other = next((law for law in laws if law is not None), None)
+    if outcome.classes and other is not None and verdict != "no-evidence":
+        verdict = "unknown"
     found = None
     if verdict == "unknown" or not all(
         _consistent(c[0], outcome.final, data) for c in outcome.classes
@@ -158,7 +164,7 @@ def investigate(
         verdict = "data-fault"
     if verdict in ("unknown", "data-fault"):
         outcome = replace(outcome, named=False)
-    return Case(data, baseline, outcome, before, after, blind, verdict, found)
+    return Case(data, baseline, outcome, before, after, blind, verdict, found, other)
 
 
 def _consistent(cause: Trial, final: Fitted, data: Data) -> bool:
@@ -237,45 +243,6 @@ def complete(
 
 
 # ---- causes ------------------------------------------------------------
-
-
-def found_value(fitted: Fitted, effect: Effect, data: Data) -> ParameterValue:
-    """A cause's parameter. Its error is that of the fit or that between records, whichever is larger."""
-    name = effect.parameters[0]
-    own = fitted.standard_error(name)
-    estimates = list(record_by_record(fitted, effect, data).values())
-    weight = np.array([1.0 / e**2 for _, e in estimates])
-    values = np.array([v for v, _ in estimates])
-    between = 0.0
-    if len(values) > 1:
-        centre = float(np.sum(weight * values) / np.sum(weight))
-        between = float(
-            np.sqrt(np.sum(weight * (values - centre) ** 2) / np.sum(weight) / (len(values) - 1))
-        )
-    return value_of(fitted, name, data.rig.declared(name).value, max(own, between))
-
-
-def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, tuple[float, float]]:
-    """Record -> the parameter refitted on it alone with its error, the free parameters within what is declared."""
-    out = {}
-    name = effect.parameters[0]
-    for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
-        assert isinstance(runs, Runs)
-        column = columns_of(runs.problem, at.params, at.fit.residual, [effect], at.hypothesis.table)
-        nuisance = nuisance_of(at)
-        if name in nuisance.names:
-            nuisance = nuisance.without(name)
-        for number, run in enumerate(runs.motions):
-            rows = runs.record == number
-            own = Nuisance(nuisance.names, nuisance.jacobian[rows], nuisance.pull, nuisance.off)
-            reduced = project(own, column[rows], [name])[:, 0]
-            size = float(reduced @ reduced)
-            if size <= 0.0:
-                continue
-            full = np.concatenate([at.fit.residual[rows], own.pull * own.off])
-            error = float(np.sqrt(np.mean(at.fit.residual[rows] ** 2) / size))
-            out[run.name] = (at.params[name] - float(reduced @ full) / size, error)
-    return out
 
 
 def _cause(members: list[Trial], case: Case) -> Cause:
