@@ -18,9 +18,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sms.diagnosis.catalogue import effects_of
+from sms.diagnosis.catalogue import Effect, effects_of
+from sms.diagnosis.excess import Excess, excess_of
+from sms.diagnosis.hypothesis import fit
 from sms.diagnosis.method import read_and_check
-from sms.diagnosis.plant import investigate, make_data
+from sms.diagnosis.plant import Case, investigate, make_data
 from sms.diagnosis.size import found_value
 from sms.io.rig import load_rig
 
@@ -77,46 +79,46 @@ def _runs_rng(seed: int) -> np.random.Generator:
 
 def run_task(task: Task) -> Outcome:
     """Hide, diagnose, then open the truth."""
-    os.environ.setdefault("SMS_THREADS", "1")
     with tempfile.TemporaryDirectory() as folder:
         records, sealed = Path(folder) / "records", Path(folder) / "sealed" / "truth.json"
         hide(task, records, sealed)
-        begin = time.process_time()
-        rig = load_rig(records / "rig.toml")
-        read, _ = read_and_check(rig)
-        data, rng = make_data(rig, read), np.random.default_rng(task.seed)
-        case = investigate(data, effects_of(rig), rng, lambda text, done: None)
-        named = [
-            [m.effect.key.replace(" of ", ":") for m in members] for members in case.outcome.classes
-        ]
-        estimates = {}
-        for members in case.outcome.classes:
-            for m in members:
-                at = case.outcome.final if m is members[0] else m.fitted
-                value = found_value(at, m.effect, case.data)
-                estimates[m.effect.key.replace(" of ", ":")] = (
-                    value,
-                    rig.declared(value.name).value,
-                )
-        block = ""
-        if case.verdict == "unknown":
-            block = case.where(np.random.default_rng(task.seed)).equation
-        seconds = time.process_time() - begin
-        truth = open_truth(sealed, records)
+        answer = answered(records, task.seed)
+        return outcome_of(task, answer, open_truth(sealed, records))
+
+
+@dataclass(frozen=True)
+class Answered:
+    """A diagnosis of a folder of records."""
+
+    case: Case
+    block: str
+    """The equation that takes most, for the verdict unknown."""
+    seconds: float
+    """Of processor time."""
+
+
+def answered(records: Path, seed: int) -> Answered:
+    """Diagnose the records of a folder, on one thread."""
+    os.environ.setdefault("SMS_THREADS", "1")
+    begin = time.process_time()
+    rig = load_rig(records / "rig.toml")
+    read, _ = read_and_check(rig)
+    data, rng = make_data(rig, read), np.random.default_rng(seed)
+    case = investigate(data, effects_of(rig), rng, lambda text, done: None)
+    unknown = case.verdict == "unknown"
+    block = case.where(np.random.default_rng(seed)).equation if unknown else ""
+    return Answered(case, block, time.process_time() - begin)
+
+
+def key_of(effect: Effect) -> str:
+    """An effect's name in the words of the generator: "sensor_gain:extension"."""
+    return effect.key.replace(" of ", ":")
+
+
+def outcome_of(task: Task, answer: Answered, truth: dict[str, Any]) -> Outcome:
+    """What was said against the opened truth."""
+    case = answer.case
     hidden = [e["key"] for e in truth["effects"]]
-    shifts = {e["key"]: e["is_shift"] for e in truth["effects"]}
-    found = []
-    for e in truth["effects"]:
-        if e["key"] in estimates:
-            value, declared = estimates[e["key"]]
-            if (
-                value.unit != e["unit"]
-            ):  # the simulator has another law for it, with numbers of its own
-                continue
-            found.append(
-                (value.value - (declared if shifts[e["key"]] else 0.0), value.standard_error)
-            )
-    before, after = float(np.mean(case.before.validate)), float(np.mean(case.after.validate))
     return Outcome(
         task.kind,
         task.seed,
@@ -125,12 +127,64 @@ def run_task(task: Task) -> Outcome:
         hidden,
         [float(e["value"]) for e in truth["effects"]],
         case.verdict,
-        named,
-        found,
-        block,
-        1.0 - max(after, 0.0) / max(before, 1e-9),
-        seconds,
+        [[key_of(m.effect) for m in members] for members in case.outcome.classes],
+        _estimates(case, truth["effects"]),
+        answer.block,
+        taken(case, case.after),
+        answer.seconds,
+        achievable(case, hidden) if task.sort in ("catalogue", "pair") else None,
     )
+
+
+def _estimates(case: Case, hidden: Sequence[dict[str, Any]]) -> list[tuple[float, float]]:
+    """Value and standard error of what was hidden, where it was named."""
+    rig = case.data.rig
+    found = {}
+    for members in case.outcome.classes:
+        for m in members:
+            at = case.outcome.final if m is members[0] else m.fitted
+            found[key_of(m.effect)] = found_value(at, m.effect, case.data)
+    estimates = []
+    for e in hidden:
+        value = found.get(e["key"])
+        # With another unit the simulator has another law for it, with numbers of its own.
+        if value is not None and value.unit == e["unit"]:
+            declared = rig.declared(value.name).value if e["is_shift"] else 0.0
+            estimates.append((value.value - declared, value.standard_error))
+    return estimates
+
+
+# ---- gain ------------------------------------------------------------
+
+
+def taken(case: Case, after: Excess) -> float:
+    """Part of the baseline's excess on the unseen records that a model takes."""
+    before = float(np.mean(case.before.validate))
+    return 1.0 - max(float(np.mean(after.validate)), 0.0) / max(before, 1e-9)
+
+
+def achievable(case: Case, hidden: Sequence[str]) -> float | None:
+    """The same for the true model: the core with exactly what was hidden, its parameters fitted to the same records.
+
+    Not with the sealed values: the simulator has laws of its own, and its numbers are not the core's. Where the answer
+    is this model, it is not fitted again. None where the core has no such effect.
+    """
+    effects = {key_of(e): e for e in effects_of(case.data.rig)}
+    if not all(key in effects for key in hidden):
+        return None
+    classes = case.outcome.classes
+    if sorted(key_of(c[0].effect) for c in classes) == sorted(hidden):
+        return taken(case, case.after)
+    alone = [m for c in classes for m in c if key_of(m.effect) == hidden[0]]
+    if len(classes) == len(hidden) == len(alone) == 1:
+        return taken(case, excess_of(alone[0].fitted, case.data))
+    hypothesis = case.baseline.hypothesis
+    start = case.baseline.params.copy()
+    for key in hidden:
+        hypothesis = hypothesis.with_effect(effects[key])
+        if (step := effects[key].step) is not None:  # without a slope at its neutral value
+            start[effects[key].parameters[0]] = step
+    return taken(case, excess_of(fit(hypothesis, case.data.identify, start), case.data))
 
 
 # ---- many ------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from json import dumps
 from pathlib import Path
 
@@ -11,9 +11,12 @@ import pytest
 from validation.hidden_effects.plant_trial import (
     Outcome,
     Task,
+    achievable,
+    answered,
     confusion,
     done_already,
     goals,
+    hide,
     run_task,
     run_tasks,
     tasks,
@@ -48,6 +51,25 @@ def test_goals_and_the_confusion_matrix_are_counts() -> None:
     alarms = next(g for g in goals(outcomes) if "healthy" in g.what)
     assert (alarms.count, alarms.of, alarms.share) == (1, 2, 0.5)
     assert confusion(outcomes)["nothing"] == {"no-evidence": 1, "unknown": 1}
+
+
+def test_a_gain_is_held_against_that_of_the_true_model() -> None:
+    leak = replace(outcome("catalogue", ["piston_leakage"], "cause", ["piston_leakage"]), gain=0.6)
+    scored = [replace(leak, achievable=a) for a in (0.6, 0.7, None, -0.1)]
+    assert [o.of_achievable for o in scored] == [1.0, pytest.approx(6 / 7), None, None]
+    counted = next(g for g in goals(scored) if "true model" in g.what)
+    assert (counted.count, counted.of) == (1, 2)
+
+
+def test_the_true_model_gains_the_same_whether_it_was_the_answer_or_not(tmp_path: Path) -> None:
+    hide(Task("tank", 108, "catalogue", 3.0), tmp_path / "records", tmp_path / "truth.json")
+    case = answered(tmp_path / "records", 108).case
+    as_answered = achievable(case, ["fitting_leakage:lower"])
+    silent = replace(case, outcome=replace(case.outcome, named=False))
+    assert as_answered is not None and as_answered > 0.8
+    assert achievable(silent, ["fitting_leakage:lower"]) == pytest.approx(as_answered, abs=1e-3)
+    assert (achievable(case, ["sensor_lag:tank_pressure"]) or 0.0) < 0.5 * as_answered
+    assert achievable(case, ["bent_rod"]) is None
 
 
 def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
