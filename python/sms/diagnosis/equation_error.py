@@ -76,27 +76,21 @@ class Fed:
         white = solve_triangular(self.factor[number], averaged, lower=True)
         return white[:, 0], white[:, 1:]
 
+    def missing(self, number: int, error: Array) -> Array:
+        """(m,): what one equation lacks, in its unit, from its errors in units of their noise."""
+        return np.asarray(-self.factor[number] @ error)
+
 
 def fed_equations(runs: Runs, fitted: Fitted, rng: np.random.Generator) -> FedEquations | None:
     """The error of each equation and its share of what is not noise; None for a kind without such equations."""
-    equations = runs.kind.equations
-    if equations is None:
+    if runs.kind.equations is None:
         return None
-    floor = runs.floor(fitted.fit.residual)
-    noise = {
-        s: runs.noise[s] * float(np.sqrt(f)) for s, f in zip(runs.channels, floor, strict=True)
-    }
-    fed = [feed(runs, run, equations, fitted.params, noise) for run in runs.motions]
-    units = equations.units(runs.channels)
-    free = free_of(fitted.hypothesis)
-    left = [
-        _beyond_parameters(fed, k, fitted.params, [free[i] for i in felt])
-        for k, felt in enumerate(_felt(fed, fitted.params, [f.name for f in free]))
-    ]
+    units = runs.kind.equations.units(runs.channels)
+    fed, left = errors_of(runs, fitted, runs.kind.equations)
     excess = np.column_stack([np.concatenate(parts) for parts in left]) ** 2 - 1.0
     shares, low, high = _shares(excess, _stretches(fed), rng)
     missing = [
-        np.column_stack([-f.factor[k] @ parts[number] for k, parts in enumerate(left)])
+        np.column_stack([f.missing(k, parts[number]) for k, parts in enumerate(left)])
         for number, f in enumerate(fed)
     ]
     every, all_noise = np.vstack(missing), np.vstack([f.noise for f in fed])
@@ -128,6 +122,26 @@ def fed_equations(runs: Runs, fitted: Fitted, rng: np.random.Generator) -> FedEq
             for k, (name, unit) in enumerate(units.items())
         ),
     )
+
+
+def errors_of(
+    runs: Runs, fitted: Fitted, equations: Equations
+) -> tuple[list[Fed], list[list[Array]]]:
+    """The records fed, and of each equation in each record the errors (m,) in units of their noise.
+
+    What is not known exactly is fitted to each equation alone, within what is declared.
+    """
+    floor = runs.floor(fitted.fit.residual)
+    noise = {
+        s: runs.noise[s] * float(np.sqrt(f)) for s, f in zip(runs.channels, floor, strict=True)
+    }
+    fed = [feed(runs, run, equations, fitted.params, noise) for run in runs.motions]
+    free = free_of(fitted.hypothesis)
+    felt = _felt(fed, fitted.params, [f.name for f in free])
+    return fed, [
+        _beyond_parameters(fed, k, fitted.params, [free[i] for i in numbers])
+        for k, numbers in enumerate(felt)
+    ]
 
 
 # ---- errors and their noise ----------------------------------------------------------------------

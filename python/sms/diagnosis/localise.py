@@ -127,9 +127,17 @@ def _columns(runs: Runs, hidden: Array, equation: str, functions: Array) -> Arra
 
 def with_curve(runs: Runs, nuisance: Nuisance, params: _core.Params, shape: Shape) -> Array:
     """(rows,): how the residual changes, to first order, when the simulation carries a curve as a term."""
-    functions = hats(signals_of(runs)[shape.signal], np.array(shape.at))
-    columns = _columns(runs, runs.problem.hidden(params, KNOTS), shape.equation, functions)
-    full = nuisance.with_declared(columns @ np.array(shape.value))
+    values = hats(signals_of(runs)[shape.signal], np.array(shape.at)) @ np.array(shape.value)
+    return with_terms(runs, nuisance, params, {shape.equation: values})
+
+
+def with_terms(
+    runs: Runs, nuisance: Nuisance, params: _core.Params, terms: Mapping[str, Array]
+) -> Array:
+    """(rows,): the same for any terms, equation -> (rows,) in its unit."""
+    hidden = runs.problem.hidden(params, KNOTS)
+    columns = np.sum([_columns(runs, hidden, e, v[:, None]) for e, v in terms.items()], axis=0)
+    full = nuisance.with_declared(columns[:, 0])
     q = nuisance.basis()
     return np.asarray((full - q @ (q.T @ full))[: len(columns)])
 

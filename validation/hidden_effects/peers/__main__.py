@@ -1,8 +1,10 @@
-"""The diagnosis and four things a user would do otherwise, on the same trials, in one table.
+"""The diagnosis and what a user would do otherwise, on the same trials, in one table.
 
-    python -m validation.hidden_effects.peers --rig cylinder --count 40 --seed 1
+    python -m validation.hidden_effects.peers --rig cylinder --count 20 --seed 1
+    python -m validation.hidden_effects.peers --rig bench --count 40 --seed 300000 --out peers
 
-Makes the environment build/diagnosis_peers (PySINDy, scikit-learn) when it is missing.
+The first puts 20 trials of each sort, the second the trials of `sms trials` with the same seeds; what is in its folder
+already is not done again. Makes the environment build/diagnosis_peers (PySINDy, scikit-learn) when it is missing.
 """
 
 from __future__ import annotations
@@ -18,33 +20,66 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import track
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeRemainingColumn,
+    track,
+)
 
-from validation.hidden_effects.peers import on_bench, on_cylinder
-from validation.hidden_effects.peers.exchange import Question
+from validation.hidden_effects.machines import effects
+from validation.hidden_effects.machines.scoring import goal_table
+from validation.hidden_effects.peers import on_cylinder, on_machines
+from validation.hidden_effects.peers.machine_table import machine_table
+from validation.hidden_effects.peers.peer_process import PeerProcess
 from validation.hidden_effects.peers.scoring import SORTS, Said, table
+from validation.hidden_effects.plant_trial import tasks
 from validation.multibody.environment import ROOT, PeersUnavailableError, peer_python
 
-Ask = Callable[[int, str, float], tuple[list[Said], Question]]
-RIGS: dict[str, tuple[Ask, Callable[[list[str]], tuple[tuple[str, ...], ...]]]] = {
-    "cylinder": (on_cylinder.ask, on_cylinder.named_by_terms),
-    "bench": (on_bench.ask, on_bench.named_by_terms),
-}
+
+def environment() -> Path:
+    """The peers' Python. PeersUnavailableError when they cannot be installed."""
+    requirements = Path(__file__).with_name("requirements.txt")
+    return peer_python(ROOT / "build" / "diagnosis_peers", requirements, "0.3 GB")
 
 
-def run(rig: str, first: int, count: int, multiple: float, workers: int) -> list[Said]:
-    """`count` trials of each sort, by every method. PeersUnavailableError when the peers cannot be installed."""
-    python = peer_python(
-        ROOT / "build" / "diagnosis_peers",
-        Path(__file__).with_name("requirements.txt"),
-        "0.3 GB",
+# ---- bench, platform, tank ---------------------------------------------------------------
+
+
+def run_machines(
+    rig: str, first: int, count: int, multiple: float, out: Path
+) -> list[on_machines.Round]:
+    """The trials of `sms trials` with these seeds, by every method, one after another."""
+    wanted = tasks(rig, first, count, multiple)
+    columns = (
+        TextColumn("hiding, and asking everyone"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
     )
-    ask, named_by_terms = RIGS[rig]
+    with (
+        PeerProcess(environment()) as peers,
+        Progress(*columns, console=Console(stderr=True), transient=True) as progress,
+    ):
+        task = progress.add_task("", total=count)
+        return on_machines.play_all(
+            wanted, out / f"{rig}.jsonl", peers.ask, lambda: progress.advance(task)
+        )
+
+
+# ---- cylinder ----------------------------------------------------------------------------
+
+
+def run(first: int, count: int, multiple: float, workers: int) -> list[Said]:
+    """`count` trials of each sort on the cylinder, by every method."""
+    python = environment()
     said: list[Said] = []
     with tempfile.TemporaryDirectory() as name, ProcessPoolExecutor(workers) as pool:
         folder = Path(name)
         jobs = [
-            pool.submit(ask, first + SORTS.index(sort) * count + i, sort, multiple)
+            pool.submit(on_cylinder.ask, first + SORTS.index(sort) * count + i, sort, multiple)
             for sort in SORTS
             for i in range(count)
         ]
@@ -55,7 +90,7 @@ def run(rig: str, first: int, count: int, multiple: float, workers: int) -> list
             by_us, question = job.result()
             question.save(folder / f"{by_us[0].trial}.npz")
             said += by_us
-        said += _peers(python, folder, said, named_by_terms)
+        said += _peers(python, folder, said, on_cylinder.named_by_terms)
     return said
 
 
@@ -86,6 +121,9 @@ def _peers(
     ]
 
 
+# ---- command line ------------------------------------------------------------------------
+
+
 def main() -> None:
     """The command line."""
     parser = argparse.ArgumentParser(
@@ -93,22 +131,32 @@ def main() -> None:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--rig", choices=sorted(RIGS), default="cylinder")
-    parser.add_argument("--count", type=int, default=20, help="trials of each sort")
+    parser.add_argument("--rig", choices=("cylinder", *effects.RIGS), default="cylinder")
+    parser.add_argument(
+        "--count", type=int, default=20, help="trials; on the cylinder: of each sort"
+    )
     parser.add_argument("--seed", type=int, help="of the first trial; fresh if left out")
     parser.add_argument("--multiple", type=float, default=3.0, help="of the detection limit")
-    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--workers", type=int, default=2, help="processes, on the cylinder")
+    parser.add_argument(
+        "--out", type=Path, default=Path("peers"), help="folder of the answers, but on the cylinder"
+    )
     options = parser.parse_args()
     first = secrets.randbelow(10**6) if options.seed is None else options.seed
+    console = Console(width=140)
+    title = f"effects at {options.multiple:g} times their detection limit"
     try:
-        said = run(options.rig, first, options.count, options.multiple, options.workers)
+        if options.rig == "cylinder":
+            said = run(first, options.count, options.multiple, options.workers)
+            last = first + 3 * options.count - 1
+            console.print(table(said, f"cylinder, seeds {first} to {last}, {title}"))
+        else:
+            rounds = run_machines(options.rig, first, options.count, options.multiple, options.out)
+            last = first + options.count - 1
+            console.print(goal_table([r.outcome for r in rounds]))
+            console.print(machine_table(rounds, f"{options.rig}, seeds {first} to {last}, {title}"))
     except PeersUnavailableError as error:
         sys.exit(str(error))
-    title = (
-        f"{options.rig}, seeds {first} to {first + 3 * options.count - 1}, effects at "
-        f"{options.multiple:g} times their detection limit"
-    )
-    Console(width=120).print(table(said, title))
 
 
 if __name__ == "__main__":

@@ -112,11 +112,15 @@ def gaussian_process(question: Question) -> Answer:
 
 
 def whiteness(question: Question) -> Answer:
-    """Ljung and Box (1978) over 20 lags: is the fitted model's residual white?"""
-    residual, series = question.identify.residual, question.identify.series
-    smallest, tests = 1.0, 0
-    for number in np.unique(series):
-        r = residual[series == number]
+    """Is the fitted model's residual white?"""
+    return Answer((), ljung_box(question.identify)[0])
+
+
+def ljung_box(part: Part) -> tuple[bool, float]:
+    """Ljung and Box (1978) over 20 lags: whether some series is not white, and the largest statistic."""
+    smallest, largest, tests = 1.0, 0.0, 0
+    for number in np.unique(part.series):
+        r = part.residual[part.series == number]
         if len(r) <= 2 * LAGS:
             continue
         r = r - r.mean()
@@ -125,7 +129,8 @@ def whiteness(question: Question) -> Answer:
         n = len(r)
         q = n * (n + 2) * float(np.sum(rho**2 / (n - lags)))
         smallest, tests = min(smallest, float(chi2.sf(q, LAGS))), tests + 1
-    return Answer((), smallest * tests < SIGNIFICANT)
+        largest = max(largest, q)
+    return smallest * tests < SIGNIFICANT, largest
 
 
 def _gain(before: Array, after: Array) -> float:

@@ -78,7 +78,7 @@ def test_a_trial_brings_the_diagnosis_the_best_aic_and_a_question() -> None:
 @pytest.mark.full
 def test_the_table_has_every_method_on_every_sort(capsys: pytest.CaptureFixture[str]) -> None:
     try:
-        found = peers.run("cylinder", 1, 2, 3.0, 2)
+        found = peers.run(1, 2, 3.0, 2)
     except PeersUnavailableError as error:
         pytest.skip(str(error))
     assert len(found) == 2 * 3 * 5
