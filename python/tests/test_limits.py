@@ -63,6 +63,13 @@ def test_a_kind_without_menu_is_refused(tmp_path: Path) -> None:
         detection_limits(rig)
 
 
+def test_a_machine_that_nobody_published_is_refused_by_those_that_are() -> None:
+    with pytest.raises(InputError, match="nosuch: neither .* those are tank, bench, platform"):
+        detection_limits("nosuch")
+    with pytest.raises(InputError, match="there is no such rig file"):
+        detection_limits("nosuch.toml")
+
+
 def test_the_best_experiment_has_the_smallest_limit() -> None:
     rig = published_rig("tank")
     row = limits.Row(effects_of(rig)[0], "V", (Limit(None, "x"), Limit(2.0), Limit(0.5)))

@@ -17,7 +17,7 @@ from sms.diagnosis.gauss_newton import Free, Solution, changed, fit_windows
 from sms.diagnosis.prepare import Comparison
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
-from sms.diagnosis.screening import Nuisance
+from sms.diagnosis.screening import Nuisance, pulls
 from sms.diagnosis.statistics import covariance_of, project_off
 from sms.io.rig import Rig
 from sms.parameters import PARAMETERS, Parameter
@@ -222,6 +222,6 @@ def nuisance_of(fitted: Fitted) -> Nuisance:
     return Nuisance(
         movable,
         fitted.fit.jacobian[:, place],
-        np.array([1.0 / h.known[n] if n in h.known else 0.0 for n in movable]),
+        pulls(movable, h.known),
         np.array([fitted.params[n] - h.start[n] for n in movable]),
     )

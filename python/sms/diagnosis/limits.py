@@ -24,7 +24,7 @@ from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.result import Array
 from sms.diagnosis.rounds import Progress
 from sms.diagnosis.runs import Runs, make_run, noise_of
-from sms.diagnosis.screening import Nuisance, columns_of, project
+from sms.diagnosis.screening import columns_of, nuisance_at, project
 from sms.diagnosis.visible import DETECTION
 from sms.io.errors import InputError
 from sms.io.records import load_record
@@ -95,7 +95,7 @@ def detection_limits(rig: Rig | str | Path, progress: Progress = lambda text, do
     InputError for a kind of rig that is not simulated, or records that cannot be read.
     """
     if not isinstance(rig, Rig):
-        rig = published_rig(str(rig)) if str(rig) in KINDS else load_rig(rig)
+        rig = _named(str(rig))
     if rig.kind not in KINDS:
         raise InputError(
             f"{rig.path}: a {rig.kind} has no menu of experiments that could be simulated; "
@@ -133,6 +133,16 @@ def detection_limits(rig: Rig | str | Path, progress: Progress = lambda text, do
     return Limits(rig.title, tuple(titles), {s: noise[s] for s in channels}, rows)
 
 
+def _named(rig: str) -> Rig:
+    if rig in KINDS:
+        return published_rig(rig)
+    if not Path(rig).suffix and not Path(rig).exists():
+        raise InputError(
+            f"{rig}: neither a rig file (rig.toml) nor a published machine; those are {', '.join(KINDS)}"
+        )
+    return load_rig(rig)
+
+
 def published_rig(kind: str) -> Rig:
     """A rig without records: parameters as published, sensors as on the source's bench."""
     legs = kind == "platform"
@@ -160,15 +170,10 @@ def limits_of(
     """Of these effects in one record."""
     runs = Runs(rig, (run,), noise, kind)
     baseline = baseline_hypothesis(Data(rig, runs, runs), effects)
-    names = list(baseline.free)
-    residual, jacobian = runs.problem.evaluate(baseline.start, names)
-    nuisance = Nuisance(
-        names,
-        np.asarray(jacobian),
-        np.array([1.0 / baseline.known[n] if n in baseline.known else 0.0 for n in names]),
-        np.zeros(len(names)),
+    residual, nuisance = nuisance_at(
+        runs.problem, baseline.start, list(baseline.free), baseline.known
     )
-    raw = columns_of(runs.problem, baseline.start, np.asarray(residual), effects, rig.table)
+    raw = columns_of(runs.problem, baseline.start, residual, effects, rig.table)
     usable = np.all(np.isfinite(raw), axis=0)
     reduced = project(nuisance, np.where(usable, raw, 0.0), [e.parameters[0] for e in effects])
     stroke = rig.declared("stroke").value

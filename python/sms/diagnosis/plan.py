@@ -19,7 +19,7 @@ from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.kind import Experiment
 from sms.diagnosis.result import Array, Hidden, NextExperiment, Verdict
 from sms.diagnosis.runs import Runs
-from sms.diagnosis.screening import Nuisance, columns_of, project
+from sms.diagnosis.screening import columns_of, nuisance_at, project
 
 
 def plan_next(
@@ -76,13 +76,7 @@ def min_separation(rivals: Sequence[Effect], final: Fitted, runs: Runs) -> float
     """Smallest, over pairs, of what one rival does that another cannot imitate, in standard errors."""
     h = final.hypothesis
     names = [n for n in final.movable if n not in {p for e in rivals for p in e.parameters}]
-    residual, jacobian = runs.problem.evaluate(final.params, names)
-    nuisance = Nuisance(
-        names,
-        np.asarray(jacobian),
-        np.array([1.0 / h.known[n] if n in h.known else 0.0 for n in names]),
-        np.zeros(len(names)),
-    )
+    residual, nuisance = nuisance_at(runs.problem, final.params, names, h.known)
     columns = columns_of(runs.problem, final.params, residual, rivals, h.table)
     footprint = project(nuisance, columns, [e.parameters[0] for e in rivals])
     sizes = _sizes(rivals, final, footprint)

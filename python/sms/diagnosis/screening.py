@@ -85,6 +85,22 @@ class Nuisance:
         return np.asarray(q[:, np.abs(np.diag(r)) > 1e-9])
 
 
+def pulls(names: Sequence[str], known: Mapping[str, float]) -> Array:
+    """(names,): how strongly each is pulled to what is declared; known: name -> declared uncertainty."""
+    return np.array([1.0 / known[n] if n in known else 0.0 for n in names])
+
+
+def nuisance_at(
+    problem: Problem, params: _core.Params, names: Sequence[str], known: Mapping[str, float]
+) -> tuple[Array, Nuisance]:
+    """The residual (rows,), and these parameters as they may move from where they are, which counts as declared."""
+    residual, jacobian = problem.evaluate(params, names)
+    nuisance = Nuisance(
+        list(names), np.asarray(jacobian), pulls(names, known), np.zeros(len(names))
+    )
+    return np.asarray(residual), nuisance
+
+
 def columns_of(
     problem: Problem,
     params: _core.Params,
