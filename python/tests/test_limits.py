@@ -64,7 +64,7 @@ def test_a_kind_without_menu_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_machine_that_nobody_published_is_refused_by_those_that_are() -> None:
-    with pytest.raises(InputError, match="nosuch: neither .* those are tank, bench, platform"):
+    with pytest.raises(InputError, match=r"nosuch: neither .* those are tank, bench, platform"):
         detection_limits("nosuch")
     with pytest.raises(InputError, match="there is no such rig file"):
         detection_limits("nosuch.toml")

@@ -243,5 +243,12 @@ def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
                 yield job.result()
         return
     with ProcessPoolExecutor(workers) as pool:
-        for job in as_completed([pool.submit(run_task, task) for task in missing]):
+        jobs = {pool.submit(run_task, task): task for task in missing}
+        for job in as_completed(jobs):
+            if (fault := job.exception()) is not None:
+                pool.shutdown(wait=False, cancel_futures=True)
+                task = jobs[job]
+                raise RuntimeError(
+                    f"trial {task.sort} of {task.kind}, seed {task.seed}, broke down; those that are done are kept"
+                ) from fault
             yield job.result()

@@ -33,6 +33,7 @@ from sms.diagnosis.localise import localise
 from sms.diagnosis.plan import plan_next
 from sms.diagnosis.plant_words import (
     conclusion,
+    nearest_in_words,
     sentence,
     sentence_of_contradiction,
     words_of_contradiction,
@@ -202,6 +203,10 @@ def complete(
     hidden, fed = case.where(rng), case.fed(np.random.default_rng(blank.seed))
     left = _hidden(final, data, case.after, rng) if causes else None
     gain = _gains(baseline, final, data, case.after.floor, rng)
+    nearest = ""
+    if outcome.found:
+        effect, law = outcome.found[0][0].effect, case.other_law
+        nearest = nearest_in_words(effect, law, case.before, case.after, data.rig.table)
     curve = None
     if empirical and case.verdict == "unknown":
         progress("measuring what the curve of the unknown is worth", 0.88)
@@ -220,7 +225,7 @@ def complete(
         if case.contradiction is None
         else sentence_of_contradiction(case.contradiction),
         conclusion=conclusion(
-            case.verdict, causes, gain, hidden, fed, left, case.before, case.after
+            case.verdict, causes, gain, hidden, fed, left, case.before, case.after, nearest
         ),
         causes=causes,
         candidates=candidates_of(outcome.rounds),

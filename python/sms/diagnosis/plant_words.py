@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from sms.diagnosis.catalogue import Effect
 from sms.diagnosis.contradiction import Contradiction
 from sms.diagnosis.excess import Excess
 from sms.diagnosis.localise import alike
 from sms.diagnosis.result import Cause, FedEquations, Finding, Gain, Hidden, Verdict
+from sms.diagnosis.size import OtherLaw
 from sms.diagnosis.words import capital, explained
-from sms.units_display import format_aligned, format_percent
+from sms.parameters import Parameter
+from sms.units_display import format_aligned, format_percent, format_quantity
 from sms.units_display import words as spaced
 
 
@@ -72,6 +75,31 @@ def shape_in_words(hidden: Hidden) -> str:
     )
 
 
+def nearest_in_words(
+    nearest: Effect,
+    law: OtherLaw | None,
+    before: Excess,
+    after: Excess,
+    table: Mapping[str, Parameter],
+) -> str:
+    """What comes closest to an unknown, and why it is not the answer."""
+    if law is None:
+        takes = 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)
+        return (
+            f"Nearest comes {nearest.title}, which takes {format_percent(takes)} of the error that is not noise: "
+            "not enough to be its cause."
+        )
+    signal, unit = (
+        law.signal.removesuffix("]").split(" [") if "[" in law.signal else (law.signal, "1")
+    )
+    name = law.effect.parameters[0]
+    low, high = format_aligned([law.low[0], law.high[0]], table[name].unit, name)
+    return (
+        f"Nearest comes {law.effect.title}, but its size would be {low} where {spaced(signal)} is below "
+        f"{format_quantity(law.cut, unit)} and {high} above: it follows another law."
+    )
+
+
 def conclusion(
     verdict: Verdict,
     causes: Sequence[Cause],
@@ -81,8 +109,9 @@ def conclusion(
     left: Hidden | None,
     before: Excess,
     after: Excess,
+    nearest: str = "",
 ) -> tuple[str, ...]:
-    """What an engineer would conclude, a sentence each."""
+    """What an engineer would conclude, a sentence each; `nearest` is what comes closest to an unknown."""
     out = []
     if verdict in ("cause", "class", "combination"):
         out += [_worth(gain)]
@@ -92,6 +121,7 @@ def conclusion(
         others = sorted(hidden.shares.items(), key=lambda item: -item[1][0])[:3]
         listed = ", ".join(f"{name.replace('_', ' ')} {format_percent(s[0])}" for name, s in others)
         out.append(f"What a hidden term in each equation would take alone: {listed}.")
+        out += [nearest] if nearest else []
     if verdict != "no-evidence" and fed is not None:
         out.append(two_ways(hidden, fed))
     if causes:

@@ -102,13 +102,11 @@ def found_value(fitted: Fitted, effect: Effect, data: Data) -> ParameterValue:
 def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, Estimate]:
     """Record -> the parameter refitted on it alone with its error, the free parameters within what is declared."""
     out = {}
-    for runs, part in zip(
-        (data.identify, data.validate), _parts(fitted, effect, data), strict=True
-    ):
-        for number, run in enumerate(runs.motions):
+    for part in _parts(fitted, effect, data):
+        for number, name in enumerate(part.names):
             found = part.size(part.record == number)
             if found is not None:
-                out[run.name] = found
+                out[name] = found
     return out
 
 
@@ -117,7 +115,7 @@ def other_law(fitted: Fitted, effect: Effect, data: Data) -> OtherLaw | None:
     parts = _parts(fitted, effect, data)
     shift = abs(parts[0].value - data.rig.declared(effect.parameters[0]).value)
     found, most = None, APART
-    for signal in parts[0].mean:
+    for signal in (n for n in parts[0].mean if all(n in p.mean for p in parts)):
         cut = float(np.median(np.concatenate([p.mean[signal] for p in parts])))
         low = _together([p.size(p.mean[signal] <= cut) for p in parts])
         high = _together([p.size(p.mean[signal] > cut) for p in parts])
@@ -188,4 +186,4 @@ def _drawn_over(runs: Runs) -> dict[str, Array]:
     """(rows,) each: what the machine was doing; of what goes both ways, how far too."""
     inputs = runs.inputs
     both = {n: v for n, v in inputs.items() if np.min(v) < 0.0 < np.max(v)}
-    return inputs | {f"size of {n}": np.abs(v) for n, v in both.items()}
+    return inputs | {f"magnitude of {n}": np.abs(v) for n, v in both.items()}
