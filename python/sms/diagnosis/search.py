@@ -120,13 +120,17 @@ def _try_on_runs(
         for k in np.argsort(-promise)[:MOST_FITS]
         if found.p_value[k] <= SIGNIFICANT and promise[k] > share * promise.max()
     ]
-    # What a step promises may be little where the way is long, as from a volume ten times too large.
+    # What a step promises may be little where the way is long, as from a volume ten times too large; and of an effect
+    # without a slope it is what the effect takes with its other parameters as they stand.
     promising += [
         k
-        for k in range(len(effects))
+        for k, effect in enumerate(effects)
         if k not in promising
         and found.p_value[k] <= SIGNIFICANT
-        and any(found.cosine[k, other] > ALIKE for other in promising[:1])
+        and (
+            any(found.cosine[k, other] > ALIKE for other in promising[:1])
+            or (effect.step is not None and len(effect.parameters) > 1)
+        )
     ]
     fits = {
         k: fit(
@@ -158,13 +162,9 @@ def _first_guess(effect: Effect, current: Fitted, found: Screen, k: int) -> _cor
     name = effect.parameters[0]
     if effect.step is None:
         return current.params
-    size = float(
-        np.clip(
-            current.params[name] + found.estimate[k],
-            0.1 * effect.step,
-            current.hypothesis.table[name].upper,
-        )
-    )
+    upper = current.hypothesis.table[name].upper
+    least = max(0.1 * effect.step, effect.plausible[0] if effect.kind == "missing" else 0.0)
+    size = float(np.clip(current.params[name] + found.estimate[k], least, upper))
     return changed(current.params, [name], np.array([size]))
 
 
