@@ -17,8 +17,7 @@ from sms.diagnosis.runs import Runs
 LEFT = 0.1
 """Of the baseline's excess: with more left, the best explanation is none: it imitates, it does not explain.
 
-Over blind trials a cause that is right leaves 1 percent in the median and 9 at the most, where the law of the hidden
-effect has another form than the core's.
+A cause that is right leaves some percent, the more the further its real law is from the core's.
 """
 
 
