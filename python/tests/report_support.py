@@ -83,6 +83,7 @@ CLASS = Cause(
     p_value=2e-9,
     consistency={"1 bar": 0.0149, "5 bar": 0.0085, "3 bar": 0.0148, "7 bar": 0.0088},
     separated_by="Hang a known weight on the load cell.",
+    support=0.99,
 )
 SINGLE = Cause(
     effect="pressure_dependent_friction",
@@ -97,6 +98,7 @@ SINGLE = Cause(
     p_value=1e-12,
     consistency={"1 bar": 8.6e-6, "5 bar": 7.3e-6, "3 bar": 7.9e-6, "7 bar": 7.6e-6},
     separated_by="",
+    support=1.0,
 )
 SHIFT = replace(
     SINGLE, effect="bore_diameter", kind="shifted parameter", title="bore", parameters=(BORE,)

@@ -99,6 +99,7 @@ def cause_from(
         separated_by=" ".join(dict.fromkeys(m.effect.separated_by for m in members))
         if len(members) > 1
         else "",
+        support=sum(m.support for m in members),
     )
 
 

@@ -96,9 +96,11 @@ def best_class(
     if not accepted:
         return []
     if data.validate.whitened:
-        return _best_of_runs(accepted, current, data)
+        return _best_of_runs(accepted, current, data, rng)
     best = max(accepted, key=lambda t: t.gain)
     counts = resampled(data.validate.record, data.validate.block, rng)
+    again = [weighted_ms(t.squared, data.validate.block, counts) for t in accepted]
+    _chosen_again(accepted, np.column_stack(again))
     members = []
     for trial in accepted:
         difference = weighted_ms(trial.squared - best.squared, data.validate.block, counts)
@@ -106,6 +108,13 @@ def best_class(
         if best.similarity[trial.effect.key] > ALIKE or as_good:
             members.append(trial)
     return members
+
+
+def _chosen_again(trials: Sequence[Trial], left: Array) -> None:
+    """Fills support: how often each of the trials has the least of (draws, trials)."""
+    best = np.argmin(left, axis=1)
+    for k, trial in enumerate(trials):
+        trial.support = float(np.mean(best == k))
 
 
 def by_window(seen: Array, unseen: Array, data: Data) -> Array:
@@ -128,10 +137,15 @@ not more than the best leaves, or any honest description of a machine would: whe
 """
 
 
-def _best_of_runs(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+def _best_of_runs(
+    accepted: Sequence[Trial], current: Fitted, data: Data, rng: np.random.Generator
+) -> list[Trial]:
     """As best_class, where each rival has one parameter and all windows count: seen ones and unseen ones alike."""
 
     left = {t.effect.key: by_window(t.identified, t.squared, data) for t in accepted}
+    own = rng.spawn(1)[0]
+    counts = np.hstack([resampled(p.record, p.block, own) for p in (data.identify, data.validate)])
+    _chosen_again(accepted, counts @ np.column_stack(list(left.values())))
     best = min(accepted, key=lambda t: float(left[t.effect.key].sum()))
     before = by_window(current.fit.residual**2, unseen(current, data) ** 2, data)
     least = least_difference(float(before.sum()), best.fitted, data)

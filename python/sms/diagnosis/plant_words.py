@@ -10,7 +10,7 @@ from sms.diagnosis.excess import Excess
 from sms.diagnosis.localise import alike
 from sms.diagnosis.result import Cause, FedEquations, Finding, Gain, Hidden, Verdict
 from sms.diagnosis.size import OtherLaw
-from sms.diagnosis.words import capital, explained
+from sms.diagnosis.words import capital, chosen_again, explained
 from sms.parameters import Parameter
 from sms.units_display import format_aligned, format_percent, format_quantity
 from sms.units_display import words as spaced
@@ -117,6 +117,7 @@ def conclusion(
         out += [_worth(gain)]
         shares = format_percent(max(0.0, 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)))
         out.append(f"Of the error that is not noise, {shares} is explained.")
+        out.append(chosen_again(causes, "windows"))
     elif verdict == "unknown":
         others = sorted(hidden.shares.items(), key=lambda item: -item[1][0])[:3]
         listed = ", ".join(f"{name.replace('_', ' ')} {format_percent(s[0])}" for name, s in others)

@@ -55,6 +55,8 @@ class Cause:
     """Record name -> the parameter refitted on this record alone (SI)."""
     separated_by: str
     """The measurement that would tell the members apart, empty for a single cause."""
+    support: float
+    """Share of 999 resamples of the windows or strokes in which the choice of its round falls on it, 0..1."""
 
 
 @dataclass(frozen=True)

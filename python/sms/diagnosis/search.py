@@ -61,6 +61,8 @@ class Trial:
     reason: str = ""
     identified: Array = field(default_factory=lambda: np.empty(0))
     """(rows,) squared residuals on the identify records, where both count in the comparison of rivals."""
+    support: float = 0.0
+    """Share of resamples of the windows or strokes in which it is the best of its round."""
 
 
 def try_effects(

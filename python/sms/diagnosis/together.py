@@ -144,4 +144,5 @@ def _in_place(member: Trial, fitted: Fitted, data: Data) -> Trial:
         similarity=member.similarity,
         accepted=True,
         identified=fitted.fit.residual**2,
+        support=member.support,
     )

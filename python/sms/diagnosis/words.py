@@ -15,7 +15,7 @@ from sms.diagnosis.result import (
     Remainder,
     Verdict,
 )
-from sms.units_display import format_change, format_estimate, format_quantity
+from sms.units_display import format_change, format_estimate, format_percent, format_quantity
 from sms.units_display import words as spaced
 
 
@@ -117,6 +117,7 @@ def conclusion(
         out.append(
             f"On the records it was not fitted to, the extended model's error falls ({worth})."
         )
+        out.append(chosen_again(causes, "strokes"))
     out.append(_of_remainder(remainder))
     hidden = [
         n
@@ -128,6 +129,18 @@ def conclusion(
             f"Nothing is claimed about {', '.join(spaced(n.effect) for n in hidden)}: {hidden[0].reason}."
         )
     return tuple(out)
+
+
+def chosen_again(causes: Sequence[Cause], unit: str) -> str:
+    """How often the same is chosen when what was judged by is drawn anew, `unit` by unit."""
+    if len(causes) == 1:
+        what = "this cause" if len(causes[0].members) == 1 else "one of this class"
+        listed = f"{what} in {format_percent(causes[0].support)}"
+    else:
+        listed = ", ".join(f"({i}) in {format_percent(c.support)}" for i, c in enumerate(causes, 1))
+    return (
+        f"With the {unit} drawn anew, again and again, the choice falls on {listed} of the cases."
+    )
 
 
 def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
