@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "estimation/bench_plant.hpp"
+#include "estimation/bench_loop.hpp"
 #include "estimation/tank_plant.hpp"
 
 namespace sms_python {
@@ -12,6 +12,7 @@ namespace {
 namespace est = sms::estimation;
 
 using BenchProblem = est::ShootingProblem<est::BenchPlant>;
+using BenchLoopProblem = est::ShootingProblem<est::BenchLoopPlant>;
 using TankPlantProblem = est::ShootingProblem<est::TankPlant>;
 using Noise = std::map<std::string, double>;
 
@@ -19,24 +20,47 @@ constexpr double kRunUp = 0.1;  // s
 
 est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::VectorXd extension,
                                    Eigen::VectorXd pressure_lower, Eigen::VectorXd pressure_upper,
-                                   Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions) {
+                                   Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions,
+                                   Eigen::VectorXd setpoint) {
   return {step,
           std::move(command),
           std::move(extension),
           std::move(pressure_lower),
           std::move(pressure_upper),
           std::move(supply_pressure),
-          conditions_of(conditions)};
+          conditions_of(conditions),
+          std::move(setpoint)};
+}
+
+est::BenchNoise bench_noise(const Noise& noise) {
+  return {noise.at("extension"), noise.at("chamber_pressure_lower"), noise.at("chamber_pressure_upper"),
+          noise.at("supply_pressure")};
 }
 
 std::unique_ptr<BenchProblem> make_bench_problem(std::vector<est::BenchRecord> records, const Noise& noise,
                                                  const std::string& friction, const std::string& valve,
                                                  const std::string& chambers, double window, double longest_step,
                                                  int threads) {
-  const est::BenchNoise sizes{noise.at("extension"), noise.at("chamber_pressure_lower"),
-                              noise.at("chamber_pressure_upper"), noise.at("supply_pressure")};
   return std::make_unique<BenchProblem>(
-      est::BenchPlant(std::move(records), sizes, laws_of(friction, valve, chambers), longest_step),
+      est::BenchPlant(std::move(records), bench_noise(noise), laws_of(friction, valve, chambers), longest_step),
+      est::WindowOptions{window, kRunUp, threads});
+}
+
+std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::BenchRecord> records, const Noise& noise,
+                                                          const Params& said, const std::string& law, bool compensated,
+                                                          bool electronics, const std::string& friction,
+                                                          const std::string& valve, const std::string& chambers,
+                                                          double window, double longest_step, int threads) {
+  using sms::PositionControl;
+  const est::ControlLaw control{
+      choice<PositionControl>("law", law,
+                              {{"pid", PositionControl::pid}, {"state_feedback", PositionControl::state_feedback}}),
+      compensated, electronics};
+  sms::ActuatorLaws laws = laws_of(friction, valve, chambers);
+  laws.drive_filter = electronics;
+  return std::make_unique<BenchLoopProblem>(
+      est::BenchLoopPlant(std::move(records), bench_noise(noise), noise.at("valve_command"), laws, control, said,
+                          longest_step),
       est::WindowOptions{window, kRunUp, threads});
 }
 
@@ -64,7 +88,8 @@ void bind_bench(py::module_& m) {
   py::class_<est::BenchRecord>(m, "BenchRecord", "One evenly sampled record of the rig 'bench'; arrays (n,), SI.")
       .def(py::init(&make_bench_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
-           py::arg("conditions") = std::map<std::string, double>());
+           py::arg("conditions") = std::map<std::string, double>(), py::arg("setpoint") = Eigen::VectorXd(),
+           "setpoint: of a loop that is simulated, where command may be empty: not measured.");
   bind_shooting_problem<est::BenchPlant, est::Problem>(m, "BenchProblem")
       .def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
@@ -72,6 +97,15 @@ void bind_bench(py::module_& m) {
            py::arg("threads") = 1,
            "noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and "
            "supply_pressure. Hidden inputs: a force, N, and flows into either chamber, kg/s.");
+  bind_shooting_problem<est::BenchLoopPlant, est::Problem>(m, "BenchLoopProblem")
+      .def(py::init(&make_bench_loop_problem), py::kw_only(), py::arg("records"), py::arg("noise"), py::arg("said"),
+           py::arg("law") = "pid", py::arg("compensated") = true, py::arg("electronics") = false,
+           py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
+           py::arg("threads") = 1,
+           "BenchProblem with the controller simulated. noise: of valve_command too, which is the last output where it "
+           "is recorded. said: the controller as declared. A fourth hidden input: a voltage at the controller's "
+           "output, V.");
 }
 
 void bind_tank(py::module_& m) {

@@ -3,6 +3,9 @@
 // A window starts with what is free: extension, velocity, both pressures, the reservoir's pressure, the deflection of the
 // seals, and by how much the air in both chambers is warmer than the supplied. The spool needs none of it: it follows the
 // command alone, and is run up over the 50 ms before the window.
+//
+// The command is the record's (RecordedCommand), or that of a controller that is simulated with the rest
+// (bench_loop.hpp).
 #pragma once
 
 #include "estimation/actuator_sensors.hpp"
@@ -21,6 +24,7 @@ struct BenchRecord {
   Eigen::VectorXd pressure_upper;
   Eigen::VectorXd supply_pressure;                 // empty: not measured
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
+  Eigen::VectorXd setpoint = {};                   // m; of a loop that is simulated
 };
 
 // Standard deviation of one sample.
@@ -29,6 +33,32 @@ struct BenchNoise {
   double pressure_lower = 1e3;
   double pressure_upper = 1e3;
   double supply_pressure = 1e3;
+};
+
+// The valve driven by the record: straight from sample to sample, `command_delay` late.
+template <typename S>
+class RecordedCommand {
+ public:
+  RecordedCommand(const BenchRates<S>& rates, const BenchRecord& record, const Window& window, int steps, const S& h)
+      : p_(rates.params()), command_(record.command), first_(window.first), steps_(steps), h_(h) {
+    late_ = p_.command_delay / S(record.step);
+  }
+  // The spool where the window begins.
+  void begin(ActuatorState<S>& actuator) const {
+    actuator.spool = detail::spool_at(p_, command_, first_, steps_, h_, late_);
+  }
+  // V, `at` counted in samples from the window's first.
+  S at(double at) const { return detail::command_at<S>(command_, S(first_ + at) - late_); }
+  // A step begins at this state, which its sensors see: a controller would have its say now.
+  void step_begins(int, int, const BenchState<S>&, const ActuatorSensors<S>&, BenchState<S>&) const {}
+  S* readings(int, S* out) const { return out; }
+
+ private:
+  const Params<S>& p_;
+  const Eigen::VectorXd& command_;
+  int first_;
+  int steps_;
+  S h_, late_;
 };
 
 class BenchPlant {
@@ -46,7 +76,7 @@ class BenchPlant {
     return scale[k];
   }
   int records() const { return static_cast<int>(records_.size()); }
-  int samples(int record) const { return static_cast<int>(of(record).command.size()); }
+  int samples(int record) const { return static_cast<int>(of(record).extension.size()); }
   double step(int record) const { return of(record).step; }
   int channels(int record) const { return of(record).supply_pressure.size() > 0 ? 4 : 3; }
   Eigen::VectorXd guess(int record, int first) const;
@@ -61,9 +91,18 @@ class BenchPlant {
   void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
                 int knots = 0) const;
 
- private:
+ protected:
   const BenchRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
+  const ActuatorLaws& laws() const { return laws_; }
+  // Steps of integration from sample to sample, each within longest_step.
+  int steps_over(double time) const { return std::max(1, static_cast<int>(std::ceil(time / longest_step_ - 1e-9))); }
 
+  // As simulate(), in `steps` steps a sample; drive_of(BenchRates, h) makes what drives the valve.
+  template <typename S, typename DriveOf>
+  void simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
+                       const S* start, S* residual, const S* hidden, int knots) const;
+
+ private:
   std::vector<BenchRecord> records_;
   BenchNoise noise_;
   ActuatorLaws laws_;
@@ -94,6 +133,17 @@ template <typename S>
 void BenchPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
                           int knots) const {
   const BenchRecord& record = of(window.record);
+  const int steps = steps_over(record.step);
+  const auto recorded = [&](const BenchRates<S>& rates, const S& h) {
+    return RecordedCommand<S>(rates, record, window, steps, h);
+  };
+  simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
+}
+
+template <typename S, typename DriveOf>
+void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
+                                 const S* start, S* residual, const S* hidden, int knots) const {
+  const BenchRecord& record = of(window.record);
   Params<S> in_this_run = params;
   for (const auto& condition : record.conditions) {
     param(in_this_run, condition.first) += S(condition.second);
@@ -101,10 +151,8 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   const BenchRates<S> rate_of(in_this_run, laws_);
   const Params<S>& p = rate_of.params();
   const bool droops = p.supply_line_resistance > S(0);
-  const double sample = record.step;
-  const int steps = std::max(1, static_cast<int>(std::ceil(sample / longest_step_ - 1e-9)));
-  const S h(sample / steps);
-  const S late = p.command_delay / S(sample);
+  const S h(record.step / steps);
+  auto drive = drive_of(rate_of, h);
 
   BenchState<S> state = bench_at_rest(rate_of.bench(), start[0], S(0), S(2e5));
   state.velocity = start[1];
@@ -113,8 +161,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   state.actuator.upper = {start[3], warm ? S(p.air_temperature + start[7]) : p.air_temperature};
   state.actuator.supply_pressure = droops ? start[4] : p.supply_pressure;
   state.actuator.deflection = start[5];
-
-  state.actuator.spool = detail::spool_at(p, record.command, window.first, steps, h, late);
+  drive.begin(state.actuator);
 
   BenchTerms<S> t;
   BenchState<S> k1, k2, moved;
@@ -129,7 +176,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
     rate.actuator.upper.pressure += value(2) * p.gas_constant * p.air_temperature / t.actuator.upper.volume;
   };
   const auto rates = [&](double at, const BenchState<S>& y, const S& film, BenchState<S>& rate) {
-    rate_of(y, detail::command_at<S>(record.command, S(window.first + at) - late), film, t, rate);
+    rate_of(y, drive.at(at), film, t, rate);
     push(at, rate);
   };
   const bool film_is_late = !is_absent(p.friction_lag);
@@ -143,7 +190,9 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   for (int k = 0;; ++k) {
     rates(k, state, film, k1);
     sensors.follow(p, state, k1, t.actuator.force - t.balance.friction);
+    drive.step_begins(k, 0, state, sensors, k1);
     residual = readings<S>(p, record, window.first + k, sensors, state, k1, residual);
+    residual = drive.readings(window.first + k, residual);
     if (k == window.samples - 1) {
       return;
     }
@@ -151,6 +200,7 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
       if (i > 0) {
         rates(k + double(i) / steps, state, film, k1);
         sensors.follow(p, state, k1, t.actuator.force - t.balance.friction);
+        drive.step_begins(k, i, state, sensors, k1);
       }
       const detail::ActuatorStiffness<S> stiff =
           detail::actuator_stiffness(p, laws_.friction, p.moving_mass, t.actuator);

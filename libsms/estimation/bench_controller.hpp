@@ -1,0 +1,199 @@
+// The position controller of a bench, simulated with the machine: the same one that the firmware runs (position_loop.hpp).
+//
+//   set-point, recorded ----------------------------v
+//   extension -> sensor, with its errors -> filter -> controller, each T_s -> held -> command_delay -> valve
+//
+// Before the window the controller is fed with the record, half a second long: filters and differentiators are then
+// those of the machine, and so are the commands that are still on their way. One number cannot be had from that, what an
+// integral holds; it is part of the window's initial state.
+//
+// The record's first sample is one of the controller's, and of its period and the record's step one is a whole multiple of
+// the other. The command is held over a period. A step of the integration has the mean of what arrives at the valve
+// within it: a jump that a delay has put into the middle of a step keeps its size and its time to first order, and the
+// simulation is smooth in the delay. Converters are left out: their steps are noise here.
+//
+// Where the command was recorded, the controller is fed with the record within the window as well, beside the simulation:
+// given the readings, the recorded command depends on the controller alone.
+#pragma once
+
+#include "estimation/bench_plant.hpp"
+#include "sms/position_loop.hpp"
+#include "sms/tube.hpp"
+
+namespace sms {
+namespace estimation {
+
+// What of a controller is no parameter.
+struct ControlLaw {
+  PositionControl control = PositionControl::pid;
+  bool compensated = true;   // steps over the dead band
+  bool electronics = false;  // anti-alias filter in front of it, filter of the pulse width behind it
+};
+
+// One controller behind its filter, sample by sample.
+template <typename S>
+class SampledController {
+ public:
+  SampledController(const Params<S>& p, const ControlLaw& law)
+      : settings_(position_loop_settings(p, law.control, law.compensated)),
+        filters_(law.electronics),
+        corner_(angular_frequency(p.anti_alias_frequency)),
+        weight_(low_pass_weight<S>(corner_, p.control_period)) {}
+
+  // Ready at a first reading, without a jump to come; integral in V.
+  void begin(const S& setpoint, const S& reading, const S& integral) {
+    loop_ = position_loop_at<S>(reading);
+    loop_.pid.integral = integral;
+    loop_.pid.change.input = setpoint - reading;
+    reading_ = filtered_ = reading;
+  }
+  // V
+  S sample(const S& setpoint, const S& reading) {
+    if (filters_) {
+      filtered_ = low_pass_ramp_step<S>(corner_, settings_.pid.period, weight_, filtered_, reading_, reading);
+      reading_ = reading;
+    }
+    return position_loop_step<S>(settings_, loop_, setpoint, filters_ ? filtered_ : reading);
+  }
+  const S& integral() const { return loop_.pid.integral; }
+
+ private:
+  PositionLoopSettings<S> settings_;
+  bool filters_;
+  S corner_, weight_;
+  PositionLoop<S> loop_{};
+  S reading_{0}, filtered_{0};
+};
+
+// How the controller's samples lie among the steps of the integration.
+struct ControlGrid {
+  int steps;  // of the integration, a sample of the record
+  int every;  // such steps, a period of the controller
+
+  // The first sample of the controller from which it is fed with the record, for a window from `first` on.
+  int begins(int first, double record_step) const {
+    constexpr double kRunUp = 0.5;  // s
+    const int from = first * steps - static_cast<int>(kRunUp / record_step * steps);
+    return std::max(0, (from + every - 1) / every);
+  }
+};
+
+// Drives the valve of a window; RecordedCommand has the same members.
+template <typename S>
+class SimulatedController {
+ public:
+  // integral: of the controller where it begins to be fed with the record, V. hidden: a voltage at the controller's
+  // output, `knots` values in the window, or nullptr. noise: of the recorded command, V.
+  SimulatedController(const BenchRates<S>& rates, const BenchRecord& record, const Window& window,
+                      const ControlLaw& law, const ControlGrid& grid, const S& h, const S& integral, const S* hidden,
+                      int knots, double noise)
+      : rates_(rates),
+        record_(record),
+        window_(window),
+        grid_(grid),
+        h_(h),
+        late_((rates.params().command_delay + tube_delay(rates.params())) / h),
+        hidden_(hidden),
+        knots_(knots),
+        noise_(noise),
+        begins_(grid.begins(window.first, record.step)),
+        simulated_(rates.params(), law),
+        fed_(rates.params(), law),
+        by_record_(rates.params().command_offset) {
+    simulated_.begin(setpoint(begins_), reading(begins_), integral);
+    for (int j = begins_; j * grid_.every < window.first * grid_.steps; ++j) {
+      sent_.push_back(by_record_ = simulated_.sample(setpoint(j), reading(j)));
+    }
+    fed_ = simulated_;
+  }
+
+  // Spool and drive where the window begins: they follow the command alone, and are run up over the 50 ms before.
+  void begin(ActuatorState<S>& a) {
+    const int first = window_.first * grid_.steps;
+    const int run_up = std::min(first, static_cast<int>(0.05 / value_of(h_)) + 1);
+    const Params<S>& p = rates_.params();
+    ActuatorState<S> k1{}, k2{}, moved{};
+    mean_ = run_up > 0 ? arriving(first - run_up) : p.command_offset;
+    a.spool = a.drive = {mean_, S(0)};
+    for (int q = first - run_up; q < first; ++q) {
+      mean_ = arriving(q);
+      drive_rates(p, rates_.laws(), a, mean_, k1);
+      moved.spool = stepped(a.spool, k1.spool, h_);
+      moved.drive = stepped(a.drive, k1.drive, h_);
+      drive_rates(p, rates_.laws(), moved, mean_, k2);
+      a.spool = stepped(stepped(a.spool, k1.spool, S(0.5) * h_), k2.spool, S(0.5) * h_);
+      a.drive = stepped(stepped(a.drive, k1.drive, S(0.5) * h_), k2.drive, S(0.5) * h_);
+    }
+  }
+
+  // V at the valve in the present step.
+  const S& at(double) const { return mean_; }
+
+  // Step i after sample k of the window begins at state y: the controller takes its sample if it is time.
+  void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>& sensors, BenchState<S>& rate) {
+    const int q = (window_.first + k) * grid_.steps + i;
+    if (hidden_ != nullptr) {
+      pushed_ = detail::hidden_at(hidden_, knots_, window_.samples, k + double(i) / grid_.steps);
+    }
+    if (q % grid_.every == 0) {
+      const int j = q / grid_.every;
+      sent_.push_back(simulated_.sample(setpoint(j), sensors.extension_reading(rates_.params(), y, S(0))));
+      by_record_ = fed_.sample(setpoint(j), reading(j));
+    }
+    mean_ = arriving(q) + pushed_;
+    drive_rates(rates_.params(), rates_.laws(), y.actuator, mean_, rate.actuator);
+  }
+
+  // What the controller makes of the recorded readings against the recorded command, over its noise.
+  S* readings(int sample, S* out) const {
+    if (record_.command.size() > 0) {
+      *out++ = detail::reading_error<S>(by_record_ + pushed_, record_.command, sample, noise_);
+    }
+    return out;
+  }
+
+ private:
+  S recorded(const Eigen::VectorXd& signal, int j) const {
+    return S(detail::command_at<double>(signal, double(j) * grid_.every / grid_.steps));
+  }
+  S setpoint(int j) const { return recorded(record_.setpoint, j); }
+  S reading(int j) const { return recorded(record_.extension, j); }
+
+  // Of sample j; before the record, and before the controller is fed: the command at rest.
+  S sent(int j) const {
+    return j < begins_ ? rates_.params().command_offset : sent_[static_cast<std::size_t>(j - begins_)];
+  }
+
+  // Mean over the step q of the integration, counted from the record's first, of what arrives at the valve: on the way
+  // are late_ steps. A jump at the very beginning of a step belongs to the step before, so that the slope against a
+  // delay of zero is that towards a longer one.
+  S arriving(int q) const {
+    using std::ceil;
+    const S from = S(q) - late_;
+    const int j = static_cast<int>(ceil(value_of(from) / grid_.every)) - 1;
+    const S before = S((j + 1) * grid_.every) - from;  // steps until the next command arrives
+    return before < S(1) ? before * sent(j) + (S(1) - before) * sent(j + 1) : sent(j);
+  }
+
+  static Lag<S> stepped(const Lag<S>& lag, const Lag<S>& rate, const S& time) {
+    return {lag.value + time * rate.value, lag.rate + time * rate.rate};
+  }
+
+  const BenchRates<S>& rates_;
+  const BenchRecord& record_;
+  const Window& window_;
+  ControlGrid grid_;
+  S h_, late_;
+  const S* hidden_;
+  int knots_;
+  double noise_;
+  int begins_;
+  SampledController<S> simulated_, fed_;
+  S by_record_;          // V: the fed controller's output
+  S pushed_{0};          // V: hidden
+  S mean_{0};            // V at the valve in the present step
+  std::vector<S> sent_;  // V: the simulated controller's output from sample begins_ on
+};
+
+}  // namespace estimation
+}  // namespace sms

@@ -1,0 +1,48 @@
+// The rig "bench" in a closed loop as a plant of shooting.hpp: the controller is simulated with the machine
+// (bench_controller.hpp). The set-point is measured instead of the command; where the command is measured as well, it is
+// held against what the controller makes of the measured extension.
+#pragma once
+
+#include "estimation/bench_controller.hpp"
+
+namespace sms {
+namespace estimation {
+
+class BenchLoopPlant : public BenchPlant {
+ public:
+  static constexpr int kStart = BenchPlant::kStart + 1;    // and the controller's integral, V
+  static constexpr int kHidden = BenchPlant::kHidden + 1;  // and a voltage at the controller's output
+
+  // said: the controller as declared, which tells where searches for the integral begin. std::invalid_argument for
+  // arrays of different lengths, numbers that are not finite, or a period that does not fit the record's step.
+  BenchLoopPlant(std::vector<BenchRecord> records, const BenchNoise& noise, double command_noise,
+                 const ActuatorLaws& laws, const ControlLaw& law, const Params<double>& said, double longest_step);
+
+  static double start_scale(int k) { return k < BenchPlant::kStart ? BenchPlant::start_scale(k) : 1.0; }
+  int channels(int record) const { return BenchPlant::channels(record) + (of(record).command.size() > 0 ? 1 : 0); }
+  Eigen::VectorXd guess(int record, int first) const;
+
+  template <typename S>
+  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
+                int knots = 0) const {
+    const BenchRecord& record = of(window.record);
+    const ControlGrid grid = grid_of(record.step, value_of(params.control_period));
+    const S* const at_output = hidden == nullptr ? nullptr : hidden + BenchPlant::kHidden * knots;
+    const auto controlled = [&](const BenchRates<S>& rates, const S& h) {
+      return SimulatedController<S>(rates, record, window, law_, grid, h, start[BenchPlant::kStart], at_output, knots,
+                                    command_noise_);
+    };
+    simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
+  }
+
+ private:
+  ControlGrid grid_of(double step, double period) const;
+
+  double command_noise_;
+  ControlLaw law_;
+  std::vector<Eigen::VectorXd> integral_;  // of each record: before each sample of the controller as declared, V
+  double said_period_;
+};
+
+}  // namespace estimation
+}  // namespace sms
