@@ -49,17 +49,42 @@ def setpoint(kind: int, time: Array) -> Array:
     return np.asarray(0.2 + waves[kind] - waves[kind][0])
 
 
-def write_bench(folder: Path, seed: int, truth: Mapping[str, float]) -> Path:
-    """Two records to identify with and two to validate with, of a machine with these parameters."""
+IN_LOOP = """
+[control]
+loop = "closed"
+controller = "simulated"
+
+[parameters]
+proportional_gain = "8 V/m"
+"""
+
+
+def write_bench(
+    folder: Path,
+    seed: int,
+    truth: Mapping[str, float],
+    *,
+    in_loop: bool = False,
+    command: bool = True,
+) -> Path:
+    """Two records to identify with and two to validate with, of a machine with these parameters.
+
+    in_loop: the rig file asks for a simulated controller; command: whether its output is recorded.
+    """
     random = np.random.default_rng(seed)
-    machine = Params(proportional_gain=8.0, **truth)
+    machine = Params(**({"proportional_gain": 8.0} | dict(truth)))
     text = RIG
+    if in_loop:
+        text = text.replace("\n[parameters]\n", 'setpoint = "setpoint"\n' + IN_LOOP)
+    if not command:
+        text = text.replace('valve_command = "valve_command"\n', "")
     for number, role in enumerate(("identify", "identify", "validate", "validate")):
         time = 1e-3 * np.arange(0.0, LENGTH / 1e-3)
-        run = simulate_bench(
-            setpoint(number, time), controller="pid", params=machine, tolerance=1e-6
-        )
+        wanted = setpoint(number, time)
+        run = simulate_bench(wanted, controller="pid", params=machine, tolerance=1e-6)
         signals = {"time": time[::EVERY], "valve_command": run["valve_command"][::EVERY]}
+        if in_loop:
+            signals["setpoint"] = wanted[::EVERY]
         for name, size in NOISE.items():
             clean = run[name][::EVERY]
             signals[name] = clean + random.normal(0.0, size, clean.size)

@@ -14,7 +14,6 @@ from sms.diagnosis.catalogue import catalogue
 from sms.diagnosis.gauss_newton import Free, fit_windows
 from sms.diagnosis.localise import hats
 from sms.diagnosis.screening import Nuisance, project, screen
-from sms.io import InputError
 
 from validation.random_cases import draw
 
@@ -180,14 +179,6 @@ def test_an_estimate_beyond_all_reason_promises_what_it_takes_within() -> None:
         residual @ residual - np.sum((residual + step) ** 2), rel=0.01
     )
     assert promise[0] > promise[1]
-
-
-def test_a_kind_that_cannot_be_diagnosed_yet_says_so(tmp_path: Path) -> None:
-    path = write_bench(tmp_path, 3, {})
-    text = path.read_text() + '\n[control]\nloop = "closed"\ncontroller = "simulated"\n'
-    path.write_text(text)
-    with pytest.raises(InputError, match='write controller = "recorded"'):
-        diagnose(path)
 
 
 def test_a_dead_channel_is_a_data_fault(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from sms import _core
 from sms.cli import app
-from sms.diagnosis import limits
+from sms.diagnosis import kinds, limits
 from sms.diagnosis.catalogue import effects_of
 from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.limits import Limit, detection_limits, limits_of, published_rig
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without 
 def short_menu(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two experiments of the tank's menu: short bursts, and the valve hardly open."""
     tank = KINDS["tank"]
-    monkeypatch.setattr(limits, "KINDS", {"tank": replace(tank, menu=tank.menu[1:3])})
+    monkeypatch.setattr(kinds, "KINDS", {"tank": replace(tank, menu=tank.menu[1:3])})
 
 
 def test_a_limit_is_three_standard_errors_and_grows_with_the_noise() -> None:

@@ -26,6 +26,13 @@ SIGNALS_IN_WORDS = {
     "chamber_pressure": "chamber pressures",
     "tank_pressure": "tank's pressure",
     "tank_temperature": "tank's temperature",
+    "proportional_gain": "proportional gain",
+    "integral_gain": "integral gain",
+    "derivative_gain": "derivative gain",
+    "dead_band_step": "step over the dead band",
+    "position_gain": "gain of position",
+    "velocity_gain": "gain of velocity",
+    "acceleration_gain": "gain of acceleration",
 }
 
 
@@ -54,6 +61,8 @@ class Effect:
     """Of a shifted parameter: `plausible` is a shift in its unit, not relative."""
     chambers: str | None = None
     """The law of the chambers under which the hypothesis stands; None under any."""
+    controller: str | None = None
+    """"recorded", or the law of a simulated controller, under which the hypothesis stands; None under any."""
 
     @property
     def key(self) -> str:
@@ -95,6 +104,7 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
             step=entry.get("step"),
             absolute=entry.get("absolute", False),
             chambers=entry.get("chambers"),
+            controller=entry.get("controller"),
             **text,
         )
 
@@ -152,4 +162,10 @@ def _read(name: str) -> dict[str, Any]:
 
 def effects_of(rig: Rig) -> tuple[Effect, ...]:
     """The hypotheses that stand for a simulated rig with its laws."""
-    return tuple(e for e in catalogue(rig.kind) if e.chambers in (None, rig.model.chambers))
+    control = rig.control
+    controller = control.law if control.controller == "simulated" else "recorded"
+    return tuple(
+        e
+        for e in catalogue(rig.kind)
+        if e.chambers in (None, rig.model.chambers) and e.controller in (None, controller)
+    )

@@ -163,6 +163,8 @@ def _notes(diagnosis: Diagnosis) -> Padding | None:
     table.title, table.show_header = None, False
     table.add_column("", style="bold", no_wrap=True)
     table.add_column("")
+    if diagnosis.command:
+        table.add_row("Command", diagnosis.command)
     if diagnosis.remainder is not None:
         table.add_row("Left", _left(diagnosis.remainder))
     if diagnosis.not_testable:

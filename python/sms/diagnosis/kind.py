@@ -140,6 +140,9 @@ class Kind:
     """Of every signal."""
     equations: Equations | None = None
     """None: the plant is known as a simulation only."""
+    computed: Mapping[str, float] = field(default_factory=dict)
+    """Outputs that a computer makes of the others' readings -> noise of a sample that is not declared, SI. They are no
+    readings, and hardly have a noise: less than what is declared, or this, is not worth a word."""
     short: float = 0.025
     """s: what differs over this time is noise; what lasts longer a model could explain."""
     honest: tuple[float, float] = (0.15, 0.3)

@@ -154,17 +154,25 @@ def simulated(
     added_mass: float = 0.0,
     supply_change: float = 0.0,
 ) -> Run | None:
-    """The record of a run along a set-point; None if it would leave the stroke less the margin, m."""
-    period, stroke = 1e-3, float(params["stroke"])
+    """The record of a run along a set-point; None if it would leave the stroke less the margin, m.
+
+    In the loop of the rig's own controller where that is simulated, else in a slow one.
+    """
+    own = rig.control.controller == "simulated"
+    period, stroke = float(params["control_period"]) if own else 1e-3, float(params["stroke"])
     time = np.arange(0.0, LENGTH, period)
     machine = params.copy()
     machine["moving_mass"] = machine["moving_mass"] + added_mass
     machine["supply_pressure"] = machine["supply_pressure"] + supply_change
-    machine["proportional_gain"] = LOOP_GAIN
+    if not own:
+        machine["proportional_gain"] = LOOP_GAIN
+    wanted = setpoint(time, stroke)
     try:
         run = simulation.simulate_bench(
-            setpoint(time, stroke),
-            controller="pid",
+            wanted,
+            controller=rig.control.law if own else "pid",
+            compensated=rig.control.compensated if own else True,
+            electronics=rig.control.electronics and own,
             params=machine,
             valve_law=rig.model.valve,
             friction_law=rig.model.friction,
@@ -176,9 +184,11 @@ def simulated(
     extension = run["extension"]
     if not (extension.min() > margin and extension.max() < stroke - margin):
         return None
-    pick = slice(None, None, round(STEP / period))
+    pick = slice(None, None, max(1, round(STEP / period)))
     names = ("valve_command", "extension", "chamber_pressure_lower", "chamber_pressure_upper")
     signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
+    if own:
+        signals["setpoint"] = np.ascontiguousarray(wanted[pick])
     if "supply_pressure" in channels:
         signals["supply_pressure"] = np.full(len(signals["extension"]), machine["supply_pressure"])
     changes = {"moving_mass": added_mass, "supply_pressure": supply_change}

@@ -20,7 +20,7 @@ from sms.diagnosis.catalogue import Effect, effects_of
 from sms.diagnosis.excitation import missing_excitation
 from sms.diagnosis.hypothesis import Data, baseline_hypothesis
 from sms.diagnosis.kind import Kind, Run
-from sms.diagnosis.kinds import KINDS
+from sms.diagnosis.kinds import KINDS, kind_of
 from sms.diagnosis.result import Array
 from sms.diagnosis.rounds import Progress
 from sms.diagnosis.runs import Runs, make_run, noise_of
@@ -101,7 +101,7 @@ def detection_limits(rig: Rig | str | Path, progress: Progress = lambda text, do
             f"{rig.path}: a {rig.kind} has no menu of experiments that could be simulated; "
             f"what has: {', '.join(KINDS)}"
         )
-    kind = KINDS[rig.kind]
+    kind = kind_of(rig)
     records = [make_run(rig, load_record(rig, source)) for source in rig.records]
     noise = noise_of(rig, kind, records)
     channels = tuple(

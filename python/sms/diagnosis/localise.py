@@ -111,7 +111,11 @@ def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis
 
 def equations_of(runs: Runs) -> dict[str, str]:
     """Where a term may be missing -> its unit: the plant's equations, and the readings."""
-    readings = {f"reading of {channel}": runs.kind.units[channel] for channel in runs.channels}
+    readings = {
+        f"reading of {channel}": runs.kind.units[channel]
+        for channel in runs.channels
+        if channel not in runs.kind.computed
+    }
     return dict(runs.kind.hidden) | readings
 
 

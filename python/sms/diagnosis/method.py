@@ -21,6 +21,7 @@ from sms.diagnosis.evidence import (
     value_of,
 )
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
+from sms.diagnosis.kinds import KINDS
 from sms.diagnosis.plant import diagnose_plant
 from sms.diagnosis.prepare import Comparison, Motion, prepare, with_role
 from sms.diagnosis.related import related_rigs
@@ -158,6 +159,7 @@ def blank_answer(
         records={r.name: r.role for r in records},
         seed=seed,
         versions=versions,
+        command=words.of_command(rig) if rig.kind in KINDS else "",
     )
 
 

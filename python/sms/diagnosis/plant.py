@@ -28,7 +28,7 @@ from sms.diagnosis.hypothesis import (
     refitted_on,
 )
 from sms.diagnosis.kind import Kind, Run
-from sms.diagnosis.kinds import KINDS
+from sms.diagnosis.kinds import KINDS, kind_of
 from sms.diagnosis.localise import localise
 from sms.diagnosis.plan import plan_next
 from sms.diagnosis.plant_words import (
@@ -89,7 +89,7 @@ class Case:
 
 def make_data(rig: Rig, records: Sequence[Record]) -> Data:
     """The records by role, as the core's problems."""
-    kind = KINDS[rig.kind]
+    kind = kind_of(rig)
     runs = [make_run(rig, record) for record in records]
     return split(rig, kind, runs, noise_of(rig, kind, runs))
 
@@ -117,11 +117,6 @@ def diagnose_plant(
         raise InputError(
             f"{rig.path}: records of a {rig.kind} can be read and checked, but not diagnosed yet; "
             f"what can be: cylinder, {', '.join(KINDS)}"
-        )
-    if rig.control.controller == "simulated":
-        raise InputError(
-            f"{rig.path}, [control] controller: the controller cannot be simulated in a diagnosis yet; "
-            'write controller = "recorded" and record valve_command'
         )
     case = investigate(make_data(rig, records), effects_of(rig), rng, progress)
     return complete(blank, case, rng, progress, empirical)

@@ -60,6 +60,8 @@ def block_in_words(equation: str) -> str:
     """ "force" -> "the balance of forces on the piston"."""
     if equation == "force":
         return "the balance of forces on the piston"
+    if equation == "command":
+        return "the controller, whose command is another than it should be"
     if equation.startswith("flow"):
         return f"the {equation.replace('flow', 'air flow')} (valve, tubes, leaks and heat look alike there)"
     return f"the {equation.replace('_', ' ')}"
@@ -165,6 +167,8 @@ def two_ways(hidden: Hidden, fed: FedEquations) -> str:
         f"Fed with measured signals, each equation by itself, {spaced(most.equation)} is off by {size} with a noise of "
         f"{noise} and has {format_percent(most.share[0])} of what is not noise"
     )
+    if hidden.equation == "command":
+        return f"{found}. The controller, to which hidden inputs in the simulation point, is none of these equations."
     if agree(hidden, fed):
         same = hidden.equation == fed.equation
         where = "there too" if same else f"to {spaced(hidden.equation)}, which is as likely here"
@@ -188,7 +192,7 @@ def block_of(block: str) -> tuple[str, ...]:
         "valve": ("flow",),
         "supply": ("flow", "supply"),
         "chamber": ("flow", "force"),
-        "control": ("flow",),
+        "control": ("flow", "command"),
         "sensors": ("reading", "force", "flow"),
         "mechanism": ("reading", "force"),
     }

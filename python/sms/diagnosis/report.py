@@ -57,6 +57,8 @@ def _curves(diagnosis: Diagnosis) -> str:
         "noise floor as a band. Rows that are not compared, such as standstill, show the "
         "measurement alone."
     )
+    if diagnosis.command:
+        lead += f" {diagnosis.command}"
     if _drawn_over(diagnosis, "extension"):
         lead += " Over the extension, the strokes lie on top of each other."
     body = (

@@ -281,6 +281,8 @@ class Diagnosis:
     """Record name -> role."""
     seed: int
     versions: dict[str, str] = field(default_factory=dict)
+    command: str = ""
+    """Where the valve's command comes from, record or simulated controller, in plain words; empty without a valve."""
     verdict: Verdict = "no-evidence"
     sentence: str = ""
     """The verdict in plain words."""

@@ -48,6 +48,8 @@ def noise_of(rig: Rig, kind: Kind, runs: Sequence[Run]) -> dict[str, float]:
         declared = None if source is None else source.noise
         steps = [sample_noise(r.signals[signal]) for r in runs if signal in r.signals]
         measured = float(np.median(steps)) if steps else 1.0
+        if signal in kind.computed:
+            measured = kind.computed[signal]
         resolution = 0.0 if source is None else source.resolution
         noise[signal] = max(declared or measured, resolution / np.sqrt(12.0), 1e-12)
     return noise
@@ -144,4 +146,6 @@ class Runs:
             same = self.block[self.channel == c]
             together = same[lag:] == same[:-lag]
             out[c] = 0.5 * np.mean((of_channel[lag:] - of_channel[:-lag])[together] ** 2)
+            if self.channels[c] in self.kind.computed:
+                out[c] = max(out[c], 1.0)
         return out

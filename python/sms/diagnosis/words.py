@@ -15,8 +15,28 @@ from sms.diagnosis.result import (
     Remainder,
     Verdict,
 )
+from sms.io.rig import Rig
 from sms.units_display import format_change, format_estimate, format_percent, format_quantity
 from sms.units_display import words as spaced
+
+
+def of_command(rig: Rig) -> str:
+    """Where the valve's command comes from."""
+    control = rig.control
+    if control.loop == "open":
+        return "Open loop: the valve's command is taken from the records."
+    if control.controller == "recorded":
+        return "Closed loop, its controller not simulated: the valve's command is taken from the records."
+    law = {"pid": "PID", "state_feedback": "state feedback"}[control.law]
+    held = (
+        "; the recorded command is held against what it makes of the recorded extension"
+        if "valve_command" in rig.signals
+        else ""
+    )
+    return (
+        f"Closed loop, its controller ({law}) simulated: it makes the valve's command from the recorded set-point and "
+        f"the simulated extension{held}."
+    )
 
 
 def capital(text: str) -> str:

@@ -70,6 +70,11 @@ def load_bench(path: Path, command: str) -> BenchRecords:
             f"{path}, [rig] kind: '{rig.kind}' has no single actuator whose valve is driven; "
             f"sms identify {command} reads rigs of kind 'bench'"
         )
+    if "valve_command" not in rig.signals:
+        raise InputError(
+            f"{path}, [signals]: the signal 'valve_command' is needed but not listed; an identification takes the "
+            "command from the records, a controller that is simulated or not"
+        )
     runs, findings, notes = _usable(rig)
     kind = KINDS[rig.kind]
     noise = noise_of(rig, kind, runs)

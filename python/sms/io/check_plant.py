@@ -137,7 +137,10 @@ def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Findi
         stem = without_leg(name)
         if stem not in USUAL_RANGE or stem == "valve_command":
             continue
-        command = record.signals["valve_command" + name[len(stem) :]] - centre
+        drive = "valve_command" + name[len(stem) :]
+        if drive not in record.signals:  # of a controller that is simulated
+            continue
+        command = record.signals[drive] - centre
         if min(float(command.max()), -float(command.min())) < OPENS:
             continue
         low, high = np.nanquantile(values, [0.05, 0.95])

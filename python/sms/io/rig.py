@@ -28,7 +28,13 @@ from sms.io.schema import (
     place,
     read_rig_text,
 )
-from sms.io.signals import KINDS, SIGNAL_UNITS, column_name, is_pressure
+from sms.io.signals import (
+    KINDS,
+    SIGNAL_UNITS,
+    column_name,
+    is_pressure,
+    with_controller_simulated,
+)
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 
@@ -199,6 +205,13 @@ def _dbc(data: DataTable, path: Path) -> Path | None:
 
 def _signals(file: RigFile, path: Path) -> dict[str, SignalSource]:
     kind = KINDS[file.rig.kind]
+    if file.control.controller == "simulated":
+        if file.control.loop == "open":
+            raise InputError(
+                f"{path}, [control]: in an open loop there is no controller to be simulated; "
+                'write loop = "closed", or controller = "recorded"'
+            )
+        kind = with_controller_simulated(kind)
     if file.signals is None:
         return {
             signal: SignalSource(signal, column_name(signal), optional=signal in kind.optional)

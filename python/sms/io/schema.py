@@ -59,11 +59,17 @@ class ModelTable(Table):
 
 
 class ControlTable(Table):
-    """[control]: whether a controller closed the loop, and whether it is simulated too."""
+    """[control]: whether a controller closed the loop, and whether it is simulated too.
+
+    law, compensated and electronics say which controller is simulated, as in sms.simulate_bench; its gains are
+    parameters.
+    """
 
     loop: Literal["open", "closed"] = "open"
     controller: Literal["recorded", "simulated"] = "recorded"
     law: Literal["pid", "state_feedback"] = "pid"
+    compensated: bool = True
+    electronics: bool = False
 
 
 class DataTable(Table):

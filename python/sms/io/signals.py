@@ -20,6 +20,16 @@ class Kind:
         return self.needed + self.optional
 
 
+def with_controller_simulated(kind: Kind) -> Kind:
+    """The same where a simulated controller drives the valve: its set-point is needed, the command is not."""
+    setpoints = tuple(s for s in kind.optional if without_leg(s) == "setpoint")
+    commands = tuple(s for s in kind.needed if without_leg(s) == "valve_command")
+    return Kind(
+        tuple(s for s in kind.needed if s not in commands) + setpoints,
+        commands + tuple(s for s in kind.optional if s not in setpoints),
+    )
+
+
 LEGS = (1, 2, 3)
 """The platform's actuators; a signal of one of them ends in its number: extension_2."""
 

@@ -141,6 +141,7 @@ def provenance(diagnosis: Diagnosis) -> str:
         "Made with",
         ("What", "Version"),
         [("rig", esc(diagnosis.rig)), ("seed", str(diagnosis.seed))]
+        + ([("command", esc(diagnosis.command))] if diagnosis.command else [])
         + [(esc(name), esc(version)) for name, version in diagnosis.versions.items()],
     )
     parts = [

@@ -1,0 +1,128 @@
+"""A bench whose controller is simulated: what its rig file says, what the diagnosis makes of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plant_support import write_bench
+from rich.console import Console
+from sms import _core
+from sms.diagnosis import Diagnosis, diagnose
+from sms.diagnosis.catalogue import effects_of
+from sms.diagnosis.console import print_diagnosis
+from sms.diagnosis.kind import Run
+from sms.diagnosis.kind_bench import MENU
+from sms.diagnosis.kinds import kind_of
+from sms.diagnosis.report import report_html
+from sms.diagnosis.words import of_command
+from sms.io import InputError, load_rig
+
+pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
+
+
+def printed(answer: Diagnosis) -> str:
+    console = Console(width=400)
+    with console.capture() as text:
+        print_diagnosis(answer, console)
+    return text.get()
+
+
+def changed(path: Path, *replacements: tuple[str, str]) -> Path:
+    text = path.read_text()
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
+# ---- rig files -----------------------------------------------------------------------------------
+
+
+def test_what_a_simulated_controller_needs_is_asked_for(tmp_path: Path) -> None:
+    path = write_bench(tmp_path, 1, {}, in_loop=True)
+    changed(path, ('setpoint = "setpoint"\n', ""))
+    with pytest.raises(InputError, match="'setpoint' is needed but not listed"):
+        diagnose(path)
+    changed(path, ('loop = "closed"', 'loop = "open"'))
+    with pytest.raises(InputError, match="in an open loop there is no controller to be simulated"):
+        diagnose(path)
+
+
+@pytest.mark.parametrize("kind", ["tank", "platform"])
+def test_other_kinds_take_the_command_from_the_record(tmp_path: Path, kind: str) -> None:
+    rig = load_rig(write_bench(tmp_path, 1, {}, in_loop=True))
+    with pytest.raises(InputError, match=f"on a bench only, not on a {kind}.*record the command"):
+        kind_of(replace(rig, kind=kind))
+
+
+def test_the_effects_of_the_controller_are_those_of_its_law(tmp_path: Path) -> None:
+    path = write_bench(tmp_path, 1, {}, in_loop=True)
+
+    def mismatches() -> set[str | None]:
+        return {e.signal for e in effects_of(load_rig(path)) if e.id == "controller_mismatch"}
+
+    pid = {"proportional_gain", "integral_gain", "derivative_gain", "dead_band_step"}
+    assert mismatches() == pid
+    changed(path, ('controller = "simulated"', 'controller = "simulated"\nlaw = "state_feedback"'))
+    assert mismatches() == {"position_gain", "velocity_gain", "acceleration_gain", "dead_band_step"}
+    changed(path, ('controller = "simulated"', 'controller = "recorded"'))
+    assert mismatches() == {None}
+
+
+def test_the_menu_runs_in_the_loop_of_the_rigs_own_controller(tmp_path: Path) -> None:
+    rig = load_rig(write_bench(tmp_path, 1, {}, in_loop=True))
+    run = MENU[1].simulated(rig, rig.start(), ("supply_pressure",))
+    assert run is not None
+    s = run.signals
+    assert run.step == pytest.approx(0.005)
+    assert set(s) >= {"setpoint", "valve_command", "supply_pressure"}
+    assert np.ptp(s["extension"]) > 0.05
+    eager = rig.start()
+    eager["proportional_gain"] = 16.0
+    closer = MENU[1].simulated(rig, eager, ())
+    assert closer is not None
+
+    def far(run: Run) -> float:
+        return float(np.abs(run.signals["setpoint"] - run.signals["extension"]).max())
+
+    assert far(closer) < 0.8 * far(run)
+
+
+# ---- the whole method ----------------------------------------------------------------------------
+
+
+def test_a_loop_without_a_recorded_command_is_healthy(tmp_path: Path) -> None:
+    answer = diagnose(write_bench(tmp_path, 2, {}, in_loop=True, command=False))
+    assert (answer.verdict, answer.causes, answer.fed) == ("no-evidence", (), None)
+    assert "simulated: it makes the valve's command" in answer.command
+    assert "held against" not in answer.command
+
+
+def test_a_gain_that_is_not_as_said_is_named_with_its_value(tmp_path: Path) -> None:
+    gain = 9.6
+    answer = diagnose(write_bench(tmp_path, 3, {"proportional_gain": gain}, in_loop=True))
+    assert answer.verdict == "cause"
+    (cause,) = answer.causes
+    assert (cause.effect, cause.signal) == ("controller_mismatch", "proportional_gain")
+    found = cause.parameters[0]
+    assert found.old_value == 8.0
+    assert found.value == pytest.approx(gain, abs=max(4.0 * found.standard_error, 0.01 * gain))
+    assert answer.hidden is not None
+    assert answer.hidden.equation == "command"
+    for page in (printed(answer), report_html(answer)):
+        assert "Closed loop, its controller (PID) simulated" in page
+        assert "the recorded command is held against" in page
+
+
+def test_the_way_taken_is_said_for_a_recorded_command_too(tmp_path: Path) -> None:
+    path = changed(
+        write_bench(tmp_path, 1, {}, in_loop=True),
+        ('controller = "simulated"', 'controller = "recorded"'),
+    )
+    said = of_command(load_rig(path))
+    assert "its controller not simulated: the valve's command is taken from the records" in said
+    assert of_command(load_rig(write_bench(tmp_path, 1, {}))).startswith("Open loop")
