@@ -27,6 +27,7 @@ from sms.diagnosis.hypothesis import (
     refitted,
     refitted_on,
 )
+from sms.diagnosis.in_use import in_use
 from sms.diagnosis.kind import Kind, Run
 from sms.diagnosis.kinds import KINDS, kind_of
 from sms.diagnosis.localise import localise
@@ -54,6 +55,7 @@ from sms.diagnosis.rounds import Outcome, Progress, find_causes
 from sms.diagnosis.runs import Runs, make_run, noise_of
 from sms.diagnosis.search import Trial
 from sms.diagnosis.size import OtherLaw, found_value, other_law, record_by_record
+from sms.diagnosis.symptoms import symptoms_of
 from sms.diagnosis.visible import testable
 from sms.io.errors import InputError
 from sms.io.records import Record
@@ -211,8 +213,6 @@ def complete(
         case.verdict, [[m.effect for m in c] for c in outcome.classes], final, data, hidden
     )
     start = baseline.hypothesis.start
-    runs = data.identify
-    assert isinstance(runs, Runs)
     return replace(
         blank,
         verdict=case.verdict,
@@ -225,7 +225,9 @@ def complete(
         causes=causes,
         candidates=candidates_of(outcome.rounds),
         not_testable=tuple(case.blind),
+        symptoms=symptoms_of(baseline, data, case.before.floor),
         gain=gain,
+        in_use=in_use(data.rig, baseline.params, final.params) if causes else (),
         hidden=hidden,
         fed=fed,
         hidden_left=left,

@@ -11,19 +11,18 @@ from sms.report.page import page, plots
 def report_html(diagnosis: Diagnosis) -> str:
     """The whole page as text, about 5 to 8 MB, of which plotly.js is 4.8 MB.
 
-    The order is that of a reader's questions: what is wrong and how much, what is it worth, can I
-    see it, what else was tried, what is left, what next, and what does all of it rest on.
+    The order is that of a reader's questions: what is wrong and how much, what is it worth, why, what
+    next; then can I see it, what else was tried, what is left, and what does all of it rest on.
     """
     parts = {
         "conclusion": ("Conclusion", verdict.conclusion(diagnosis)),
+        "origin": ("Where from", origin.origin(diagnosis)),
         "curves": ("Curves", _curves(diagnosis)),
         "residual": ("Residual", _residuals(diagnosis)),
-        "origin": ("Where from", origin.origin(diagnosis)),
         "related": ("Related rigs", related.related(diagnosis)),
         "candidates": ("What was tried", search.candidates(diagnosis)),
         "not-testable": ("Not testable", search.not_testable(diagnosis)),
         "left": ("What is left", worth.remainder(diagnosis) if diagnosis.hidden is None else ""),
-        "next": ("Next measurement", worth.next_experiment(diagnosis)),
         "data-check": ("Data check", search.findings(diagnosis)),
         "provenance": ("Provenance", search.provenance(diagnosis)),
     }
@@ -33,7 +32,6 @@ def report_html(diagnosis: Diagnosis) -> str:
             "candidates": not diagnosis.candidates,
             "not-testable": not diagnosis.not_testable,
             "left": diagnosis.remainder is None,
-            "next": diagnosis.next_experiment is None,
         }
         parts = {name: part for name, part in parts.items() if not nothing.get(name)}
     links = "".join(
@@ -41,7 +39,8 @@ def report_html(diagnosis: Diagnosis) -> str:
     )
     body = (
         '<main><div class="top">'
-        f"{verdict.header(diagnosis)}{verdict.causes(diagnosis)}{worth.gain(diagnosis)}</div>"
+        f"{verdict.header(diagnosis)}{verdict.causes(diagnosis)}{worth.gain(diagnosis)}"
+        f"{worth.next_experiment(diagnosis)}</div>"
         f'<nav aria-label="Parts of this page">{links}</nav>'
         f"{''.join(content for _, content in parts.values())}</main>"
     )
@@ -63,7 +62,7 @@ def _curves(diagnosis: Diagnosis) -> str:
         lead += " Over the extension, the strokes lie on top of each other."
     body = (
         f"{worth.key(diagnosis, 'measured', 'baseline', 'extended', 'floor')}"
-        '<div class="buttons" id="records" role="group" aria-label="Record"></div>'
+        '<div id="records" role="group" aria-label="Record and signal"></div>'
         '<div class="buttons" id="views" role="group" aria-label="Horizontal axis"></div>'
         '<div id="lines" role="img" aria-label="Measured, baseline and extended, with the errors">'
         "</div>"
@@ -89,7 +88,7 @@ def _residuals(diagnosis: Diagnosis) -> str:
         )
     body = (
         f"{worth.key(diagnosis, 'baseline', 'extended')}"
-        '<div class="buttons" id="groups" role="group" aria-label="Records shown"></div>'
+        '<div id="groups" role="group" aria-label="Records and signal shown"></div>'
         '<div id="residuals"></div>'
     )
     return section("residual", "Where the error lies", body, lead)

@@ -106,6 +106,37 @@ class Gain:
 
 
 @dataclass(frozen=True)
+class Symptom:
+    """What is wrong in one signal: the baseline's error within its windows on records that it was not fitted to."""
+
+    signal: str
+    unit: str
+    rms: float
+    noise: float
+    """Of that, what no model could explain."""
+    speaks: bool
+    """Whether it is more than two honest descriptions of one machine differ by."""
+    record: str
+    begin: float
+    end: float
+    """s from the beginning of the record: where the error is largest."""
+    share: float
+    """Of the squared error beyond the noise that lies there, 0..1."""
+    below: float
+    """Hz below which four fifths of its power lie, the noise's aside."""
+
+
+@dataclass(frozen=True)
+class InUse:
+    """One quantity of the machine in use, as either model predicts it. SI."""
+
+    name: str
+    unit: str
+    baseline: float
+    extended: float
+
+
+@dataclass(frozen=True)
 class Ripple:
     """A periodic force along the stroke, the same period in every record and direction."""
 
@@ -291,7 +322,11 @@ class Diagnosis:
     causes: tuple[Cause, ...] = ()
     candidates: tuple[Candidate, ...] = ()
     not_testable: tuple[NotTestable, ...] = ()
+    symptoms: tuple[Symptom, ...] = ()
+    """What is wrong in each signal, for rigs that are simulated."""
     gain: tuple[Gain, ...] = ()
+    in_use: tuple[InUse, ...] = ()
+    """What the causes mean to whoever uses the machine; empty without a cause."""
     remainder: Remainder | None = None
     hidden: Hidden | None = None
     """Where the baseline's error comes from, for rigs that are simulated."""

@@ -33,7 +33,6 @@ def payload(diagnosis: Diagnosis) -> dict[str, Any]:
     usable = [s for s in diagnosis.series if s.time.size > 1]
     series = sorted(usable, key=lambda s: s.role != "validate")
     floors = {(g.record, g.signal): g.noise_floor for g in diagnosis.gain}
-    several = len({s.signal for s in series}) > 1
     line_limit = LINE_POINTS // max(len(series), 1)
     pools = _pools(series)
     panels = sum(len(_input_names(members)) for _, members in pools)
@@ -41,12 +40,9 @@ def payload(diagnosis: Diagnosis) -> dict[str, Any]:
     return {
         "extended": bool(diagnosis.causes),
         "records": [
-            _lines(s, floors.get((s.record, s.signal), math.nan), line_limit, several)
-            for s in series
+            _lines(s, floors.get((s.record, s.signal), math.nan), line_limit) for s in series
         ],
-        "groups": [
-            _group(label, members, min(scatter_limit, 1500), several) for label, members in pools
-        ],
+        "groups": [_group(label, members, min(scatter_limit, 1500)) for label, members in pools],
     }
 
 
@@ -69,7 +65,7 @@ def encode(values: Array) -> str:
 # ---- over time ---------------------------------------------------------------------------------
 
 
-def _lines(s: Series, floor: float, limit: int, name_signal: bool) -> dict[str, Any]:
+def _lines(s: Series, floor: float, limit: int) -> dict[str, Any]:
     unit = axis_unit(s.unit)
     keep = thin((s.measured, s.measured - s.baseline), limit)
     breaks = _gaps(s.time)[keep]
@@ -87,7 +83,8 @@ def _lines(s: Series, floor: float, limit: int, name_signal: bool) -> dict[str, 
             axis = axis_unit(si_unit or "1")
             views.append({"title": _title(label, axis), "x": column(values, axis.factor)})
     return {
-        "label": f"{s.record}, {words(s.signal)}" if name_signal else s.record,
+        "label": s.record,
+        "of": words(s.signal),
         "role": s.role,
         "signal": _title(s.signal, unit),
         "unit": unit.label,
@@ -132,7 +129,7 @@ def _input_names(members: Sequence[Series]) -> list[str]:
     return names if any(name.startswith("time") for name in names) else [*names, "time [s]"]
 
 
-def _group(label: str, members: Sequence[Series], limit: int, name_signal: bool) -> dict[str, Any]:
+def _group(label: str, members: Sequence[Series], limit: int) -> dict[str, Any]:
     unit = axis_unit(members[0].unit)
     residuals = {
         "baseline": _pooled(members, lambda s: s.measured - s.baseline) * unit.factor,
@@ -149,7 +146,8 @@ def _group(label: str, members: Sequence[Series], limit: int, name_signal: bool)
     worst = np.abs(np.concatenate(list(residuals.values())))
     worst = worst[np.isfinite(worst)]
     return {
-        "label": f"{label}, {words(signal)}" if name_signal else label,
+        "label": label,
+        "of": words(signal),
         "error": f"error [{unit.label}]",
         "limit": float(np.quantile(worst, 0.998)) * 1.1 if worst.size else 1.0,
         "panels": panels,

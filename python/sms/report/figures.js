@@ -54,6 +54,31 @@
     if (all.length) press(0);
   }
 
+  // Records and signals, each a row of buttons; with one signal the records alone. Calls `choose` with the item's number.
+  function choices(place, items, choose) {
+    const distinct = (key) => [...new Set(items.map((item) => item[key]))];
+    const labels = distinct("label"), signals = distinct("of");
+    let label = labels[0], signal = signals[0];
+    function chosen() {
+      const exact = items.findIndex((item) => item.label === label && item.of === signal);
+      choose(exact >= 0 ? exact : items.findIndex((item) => item.label === label));
+    }
+    const rows = signals.length > 1 ? [labels, signals] : [labels];
+    rows.forEach((names, row) => {
+      const line = document.createElement("div");
+      line.className = "buttons";
+      place.append(line);
+      let ready = false;
+      buttons(line, names.map((name) => ({ label: name,
+        note: row === 0 ? items.find((item) => item.label === name).role : "" })), (number) => {
+        if (row === 0) label = names[number]; else signal = names[number];
+        if (ready) chosen();
+      });
+      ready = true;
+    });
+    if (items.length) chosen();
+  }
+
   // ---- over time ------------------------------------------------------------------------------
   const models = data.extended ? ["baseline", "extended"] : ["baseline"];
   const names = { measured: "Measured", baseline: "Baseline", extended: "Extended" };
@@ -126,18 +151,16 @@
 
   if (data.records.length) {
     const views = document.getElementById("views");
-    buttons(document.getElementById("records"),
-      data.records.map((r) => ({ label: r.label, note: r.role })),
-      (number) => {
-        record = number;
-        view = Math.min(view, data.records[record].views.length - 1);
-        drawLines();
-      });
+    choices(document.getElementById("records"), data.records, (number) => {
+      record = number;
+      view = Math.min(view, data.records[record].views.length - 1);
+      drawLines();
+    });
     if (data.records.every((r) => r.views.length > 1)) {
       buttons(views, data.records[0].views.map((v) => ({ label: `over ${v.title.split(" [")[0]}` })),
         (number) => { view = Math.min(number, data.records[record].views.length - 1); drawLines(); });
     }
-    buttons(document.getElementById("groups"), data.groups.map((g) => ({ label: g.label })),
+    choices(document.getElementById("groups"), data.groups,
       (number) => { group = number; drawResiduals(); });
     dark.addEventListener("change", () => { drawLines(); drawResiduals(); });
   }

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 from sms.diagnosis.plant_words import two_ways
 from sms.diagnosis.result import Diagnosis, ErrorCurve, FedEquations, Hidden, Shape
 from sms.report.markup import Scale, bar, esc, section, table
 from sms.report.worth import gain_table
 from sms.units_display import axis_unit, capital, format_aligned, format_percent, words
 
-WIDTH, HEIGHT, MARGIN = 560, 220, 46
+WIDTH, HEIGHT = 560, 240
+LEFT, TOP, MARGIN = 60, 28, 40
+"""Free on the left and above; below, and on the right."""
 
 
 def origin(diagnosis: Diagnosis) -> str:
@@ -21,10 +26,13 @@ def origin(diagnosis: Diagnosis) -> str:
         "alone of the error that is not noise is shown, with its 95 % interval over resampled windows. Shares need not "
         "add up: what one equation gets wrong moves the others too. No cause is assumed here: this is a second opinion."
     )
-    body = _shares(hidden) + _curve(hidden.shape, "Before the extension")
+    figures = _curve(
+        hidden.shape, "Before the extension" if diagnosis.causes else "What is missing"
+    )
     left = diagnosis.hidden_left
     if diagnosis.causes and left is not None and left.shape.share > 0.05:
-        body += _curve(left.shape, "Of what the extended model leaves")
+        figures += _curve(left.shape, "Of what the extended model leaves")
+    body = f'{_shares(hidden)}<div class="cards">{figures}</div>'
     body += _empirical(diagnosis)
     if diagnosis.fed is not None:
         body += _fed(diagnosis.fed, hidden)
@@ -89,7 +97,7 @@ def _fed(fed: FedEquations, hidden: Hidden) -> str:
     figures = "".join(map(_over_time, curves)) if fed.beyond_noise else ""
     return (
         f'<div id="fed"><p class="lead">{esc(lead)}</p><p>{esc(two_ways(hidden, fed))}</p>'
-        f"{shown}{figures}</div>"
+        f'{shown}<div class="cards">{figures}</div></div>'
     )
 
 
@@ -99,26 +107,58 @@ def _over_time(curve: ErrorCurve) -> str:
     x = curve.time
     y, band = ([v * unit.factor for v in values] for values in (curve.missing, curve.band))
     high = max(*map(abs, y), *band, 1e-300)
-    top = 0.5 * HEIGHT - 10
+    middle = 0.5 * (TOP + HEIGHT - MARGIN)
 
-    def at(a: float, b: float) -> str:
-        left = MARGIN + (a - x[0]) / max(x[-1] - x[0], 1e-300) * (WIDTH - 2 * MARGIN)
-        return f"{left:.1f},{0.5 * HEIGHT - b / high * (top - 16):.1f}"
+    def at(a: float, b: float) -> tuple[float, float]:
+        return _across(a, x), middle - b / high * (middle - TOP)
 
     around = [at(a, b) for a, b in zip(x, band, strict=True)]
     around += [at(a, -b) for a, b in zip(x[::-1], band[::-1], strict=True)]
-    line = " ".join(at(a, b) for a, b in zip(x, y, strict=True))
     caption = (
-        f"{capital(words(curve.equation))} in '{curve.record}': the term that is missing over time, {x[0]:.1f} to "
-        f"{x[-1]:.1f} s, and twice its noise about zero."
+        f"{capital(words(curve.equation))} in '{curve.record}': the term that is missing, and twice its noise "
+        "about zero."
+    )
+    drawn = (
+        f'<polygon points="{_points(around)}" fill="#88888833"/>'
+        f'<polyline points="{_points([at(a, b) for a, b in zip(x, y, strict=True)])}" fill="none" stroke="#4477aa" '
+        'stroke-width="1.5"/>'
+    )
+    across = Axis("time [s]", [(at(v, 0.0)[0], f"{v:.0f}") for v in (x[0], x[-1])])
+    up = Axis(
+        f"{words(curve.equation)} [{unit.label}]",
+        [(at(x[0], v)[1], f"{v:.2g}") for v in (-high, 0.0, high)],
+    )
+    return _figure(drawn, across, up, caption)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Its title, and its marks: where in the drawing, and what stands there."""
+
+    title: str
+    marks: Sequence[tuple[float, str]]
+
+
+def _figure(drawn: str, across: Axis, up: Axis, caption: str) -> str:
+    """A small drawing with two axes, from points that lie between the margins."""
+    bottom, low = HEIGHT - MARGIN, 'text-anchor="middle"'
+    marks = "".join(
+        f'<text x="{place:.1f}" y="{bottom + 16}" {low}>{esc(text)}</text>'
+        for place, text in across.marks
+    )
+    marks += "".join(
+        f'<line x1="{LEFT}" x2="{WIDTH - MARGIN}" y1="{place:.1f}" y2="{place:.1f}" stroke="#8886"/>'
+        f'<text x="{LEFT - 6}" y="{place + 4:.1f}" text-anchor="end">{esc(text)}</text>'
+        for place, text in up.marks
+    )
+    titles = (
+        f'<text x="{0.5 * (LEFT + WIDTH - MARGIN)}" y="{bottom + 32}" {low}>{esc(across.title)}</text>'
+        f'<text x="6" y="14">{esc(up.title)}</text>'
     )
     return (
         f'<figure class="shape"><svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{esc(caption)}" '
-        'style="max-width:40rem;width:100%">'
-        f'<polygon points="{" ".join(around)}" fill="#88888833"/>'
-        f'<polyline points="{line}" fill="none" stroke="#4477aa" stroke-width="1.5"/>'
-        f'<text x="6" y="14" font-size="12">{esc(words(curve.equation))} [{esc(unit.label)}], '
-        f"{-high:.3g} to {high:.3g}</text></svg><figcaption>{esc(caption)}</figcaption></figure>"
+        f'font-size="12" fill="currentColor">{marks}{drawn}{titles}</svg>'
+        f"<figcaption>{esc(caption)}</figcaption></figure>"
     )
 
 
@@ -131,30 +171,39 @@ def _curve(shape: Shape, title: str) -> str:
     band = [b * y_unit.factor for b in shape.band]
     low = min(0.0, *(v - b for v, b in zip(y, band, strict=True)))
     high = max(0.0, *(v + b for v, b in zip(y, band, strict=True)))
-    span_x, span_y = max(x[-1] - x[0], 1e-300), max(high - low, 1e-300)
+    span = max(high - low, 1e-300)
 
-    def at(a: float, b: float) -> str:
-        left = MARGIN + (a - x[0]) / span_x * (WIDTH - 2 * MARGIN)
-        top = HEIGHT - MARGIN - (b - low) / span_y * (HEIGHT - 1.6 * MARGIN)
-        return f"{left:.1f},{top:.1f}"
+    def at(a: float, b: float) -> tuple[float, float]:
+        return _across(a, x), HEIGHT - MARGIN - (b - low) / span * (HEIGHT - MARGIN - TOP)
 
     upper = [at(a, v + b) for a, v, b in zip(x, y, band, strict=True)]
     lower = [at(a, v - b) for a, v, b in zip(x, y, band, strict=True)]
-    line = " ".join(at(a, v) for a, v in zip(x, y, strict=True))
-    zero = f"{at(x[0], 0.0)} {at(x[-1], 0.0)}"
     caption = (
         f"{title}: the missing term in {words(shape.equation)} as a curve over {words(name)}, with its 95 % band. "
         f"It takes {format_percent(min(max(shape.share, 0.0), 1.0))} of the error that is not noise. It is a picture "
         "of what is missing, not an explanation."
     )
-    return (
-        f'<figure class="shape"><svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{esc(caption)}" '
-        'style="max-width:40rem;width:100%">'
-        f'<polyline points="{zero}" fill="none" stroke="#888" stroke-width="1"/>'
-        f'<polygon points="{" ".join(upper + lower[::-1])}" fill="#4477aa33"/>'
-        f'<polyline points="{line}" fill="none" stroke="#4477aa" stroke-width="2"/>'
-        f'<text x="{WIDTH / 2}" y="{HEIGHT - 8}" text-anchor="middle" font-size="12">{esc(words(name))} '
-        f"[{esc(x_unit.label)}], {x[0]:.3g} to {x[-1]:.3g}</text>"
-        f'<text x="6" y="16" font-size="12">{esc(words(shape.equation))} [{esc(y_unit.label)}], {low:.3g} to {high:.3g}'
-        f"</text></svg><figcaption>{esc(caption)}</figcaption></figure>"
+    drawn = (
+        f'<polygon points="{_points(upper + lower[::-1])}" fill="#4477aa33"/>'
+        f'<polyline points="{_points([at(a, v) for a, v in zip(x, y, strict=True)])}" fill="none" stroke="#4477aa" '
+        'stroke-width="2"/>'
     )
+    across = Axis(
+        f"{words(name)} [{x_unit.label}]",
+        [(_across(v, x), f"{v:.3g}") for v in (x[0], 0.5 * (x[0] + x[-1]), x[-1])],
+    )
+    ends = [v for v in (low, high) if abs(v) > 0.05 * span]
+    up = Axis(
+        f"{words(shape.equation)} [{y_unit.label}]",
+        [(at(x[0], v)[1], f"{v:.2g}") for v in (*ends, 0.0)],
+    )
+    return _figure(drawn, across, up, caption)
+
+
+def _across(value: float, x: Sequence[float]) -> float:
+    """Where a value lies between the left and the right margin."""
+    return LEFT + (value - x[0]) / max(x[-1] - x[0], 1e-300) * (WIDTH - MARGIN - LEFT)
+
+
+def _points(points: Sequence[tuple[float, float]]) -> str:
+    return " ".join(f"{a:.1f},{b:.1f}" for a, b in points)

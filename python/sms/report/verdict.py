@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from sms.diagnosis.result import Cause, Diagnosis, Member, ParameterValue, Verdict
+from sms.diagnosis.result import Candidate, Cause, Diagnosis, Member, ParameterValue, Verdict
 from sms.report.markup import Scale, dot, effect_label, empty, esc, paragraphs, section, table
-from sms.report.worth import legend
 from sms.units_display import (
     capital,
     format_aligned,
@@ -20,6 +19,11 @@ from sms.units_display import (
     words,
 )
 
+MISSING = "–"
+SPEAKS = 0.01
+"""Chance below which an effect that was tried alone speaks for itself."""
+MOST_RIVALS = 5
+"""Names that are listed of those put out for one reason."""
 VERDICT_WORDS: Mapping[Verdict, str] = {
     "no-evidence": "No evidence of a model error",
     "cause": "One cause found",
@@ -31,7 +35,7 @@ VERDICT_WORDS: Mapping[Verdict, str] = {
 _NO_CARD: Mapping[Verdict, str] = {
     "no-evidence": "Nothing is named: the simulation and these records agree within the noise.",
     "unknown": "Nothing is named: no effect in the catalogue explains what is wrong. "
-    "What is left, and where, stands below.",
+    "What is wrong, and in which equation, stands above and below.",
     "data-fault": "Nothing is named before the faults found by the data check are mended.",
 }
 
@@ -44,8 +48,35 @@ def header(diagnosis: Diagnosis) -> str:
         f"<h1>{esc(title)}</h1>"
         f'<p class="chip {diagnosis.verdict}" data-verdict="{diagnosis.verdict}">'
         f"{VERDICT_WORDS[diagnosis.verdict]}</p>"
-        f'<p class="sentence">{esc(diagnosis.sentence)}</p>{legend(diagnosis)}</div>'
+        f'<p class="sentence">{esc(diagnosis.sentence)}</p>{_symptoms(diagnosis)}</div>'
     )
+
+
+def _symptoms(diagnosis: Diagnosis) -> str:
+    """What is wrong, signal by signal: how much, when, at which frequencies."""
+    if not diagnosis.symptoms:
+        return ""
+    rows = []
+    for s in sorted(diagnosis.symptoms, key=lambda s: -s.rms / s.noise):
+        size, noise = format_aligned([s.rms, s.noise], s.unit)
+        share = format_percent(s.share)
+        rows.append(
+            (
+                esc(capital(words(s.signal))),
+                f'<span class="nowrap">{esc(size)}</span> <span class="role">noise {esc(noise)}</span>',
+                f'{esc(s.record)}, <span class="nowrap">{s.begin:.0f} to {s.end:.0f} s</span> '
+                f'<span class="role">{esc(share)} of it</span>'
+                if s.speaks
+                else "no more than noise",
+                f'<span class="nowrap">below {s.below:.0f} Hz</span>' if s.speaks else MISSING,
+            )
+        )
+    caption = (
+        "The simulation's error on unseen records, all that is declared uncertain already fitted; when most of it, "
+        "beyond the noise, occurs, and where 80 % of its power lie"
+    )
+    headers = ("Signal", "Off by (RMS)", "When most", "Frequencies")
+    return f'<div id="symptoms"><h2>What is wrong</h2>{table(caption, headers, rows, "symptoms")}</div>'
 
 
 def conclusion(diagnosis: Diagnosis) -> str:
@@ -63,8 +94,7 @@ def causes(diagnosis: Diagnosis) -> str:
         return section("causes", "Causes", empty(text))
     title = "The cause" if len(diagnosis.causes) == 1 else f"The {len(diagnosis.causes)} causes"
     cards = "".join(
-        _card(number, cause, diagnosis.records)
-        for number, cause in enumerate(diagnosis.causes, start=1)
+        _card(number, cause, diagnosis) for number, cause in enumerate(diagnosis.causes, start=1)
     )
     return section("causes", title, f'<div class="stack">{cards}</div>')
 
@@ -91,7 +121,7 @@ def is_shift(parameter: ParameterValue) -> bool:
     return math.isfinite(parameter.old_value) and abs(parameter.old_value) > 0.0
 
 
-def _card(number: int, cause: Cause, roles: Mapping[str, str]) -> str:
+def _card(number: int, cause: Cause, diagnosis: Diagnosis) -> str:
     several = len(cause.members) > 1 or len(cause.alternatives) > 1
     identifier = cause.effect + (f" {cause.signal}" if cause.signal else "")
     rivals = max(len(cause.members) - 1, len(cause.alternatives))
@@ -102,10 +132,38 @@ def _card(number: int, cause: Cause, roles: Mapping[str, str]) -> str:
         f"{_amounts(cause)}{paragraphs([cause.explanation])}"
     )
     note = f'<p class="small"><code>{esc(identifier)}</code> · {_significance(cause)}</p>'
-    evidence = _consistency(cause, roles)
+    evidence = _consistency(cause, diagnosis.records) + _against(cause, diagnosis.candidates)
     columns = (about + evidence + note, _members(cause)) if several else (about + note, evidence)
     body = "".join(f"<div>{column}</div>" for column in columns)
     return f'<article class="card cause" data-effect="{esc(identifier)}">{body}</article>'
+
+
+def _against(cause: Cause, candidates: Sequence[Candidate]) -> str:
+    """The explanations that the data speak for too, taken alone, and why they are not named."""
+    round_ = next(
+        (
+            c.round
+            for c in candidates
+            if c.accepted and (c.effect, c.signal) == (cause.effect, cause.signal)
+        ),
+        None,
+    )
+    out: dict[str, list[str]] = {}
+    for c in candidates:
+        if c.round == round_ and not c.accepted and c.p_value <= SPEAKS:
+            out.setdefault(c.reason, []).append(effect_label(c.effect, c.signal))
+    if not out:
+        text = "No other effect of the catalogue speaks from these records once chance is paid for."
+        return f'<p class="small">{text}</p>'
+    parts = [
+        f"{', '.join(names[:MOST_RIVALS])}{_more(len(names) - MOST_RIVALS)}: {esc(reason)}"
+        for reason, names in out.items()
+    ]
+    return f'<p class="small"><strong>Considered and put out.</strong> {"; ".join(parts)}.</p>'
+
+
+def _more(count: int) -> str:
+    return f" and {count} more" if count > 0 else ""
 
 
 def _significance(cause: Cause) -> str:

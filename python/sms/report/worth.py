@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sms.diagnosis.result import Diagnosis, Gain, Remainder
+from sms.diagnosis.result import Diagnosis, Gain, InUse, Remainder
 from sms.diagnosis.words import ARRANGED
-from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch
+from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch, table
 from sms.units_display import (
     capital,
     format_aligned,
@@ -56,12 +56,47 @@ def legend(diagnosis: Diagnosis) -> str:
 
 
 def gain(diagnosis: Diagnosis) -> str:
-    """Error before and after on each validate record, as bars with interval."""
+    """Error before and after on each validate record, as bars with interval, and what it means in use."""
     title = "What it is worth" if diagnosis.causes else "How far off the simulation is"
     if not diagnosis.gain:
         return section("worth", title, empty("No record was judged, so no gain is claimed."))
-    body = gain_table(diagnosis.gain, "Extended" if diagnosis.causes else "")
-    return section("worth", title, body)
+    extended = "Extended" if diagnosis.causes else ""
+    first = _worst_of_each(diagnosis.gain)
+    body = gain_table(first, extended)
+    if len(first) < len(diagnosis.gain):
+        rest = gain_table([g for g in diagnosis.gain if g not in first], extended)
+        body += (
+            f"<details><summary>The other {len(diagnosis.gain) - len(first)} of "
+            f"{len(diagnosis.gain)} records and signals</summary>{rest}</details>"
+        )
+    return section("worth", title, body + _in_use(diagnosis.in_use) + legend(diagnosis))
+
+
+def _worst_of_each(gains: Sequence[Gain]) -> list[Gain]:
+    """Of several signals, the record in which each is furthest off; of one signal, all records."""
+    signals = list(dict.fromkeys(g.signal for g in gains))
+    if len(signals) == 1:
+        return list(gains)
+    return [max((g for g in gains if g.signal == s), key=lambda g: g.baseline_rms) for s in signals]
+
+
+def _in_use(quantities: Sequence[InUse]) -> str:
+    """Rise time, bandwidth, error of following: without and with the causes."""
+    if not quantities:
+        return ""
+    rows = []
+    for q in quantities:
+        old, new = format_aligned([q.baseline, q.extended], q.unit)
+        change = q.extended / q.baseline - 1.0
+        rows.append(
+            (
+                esc(capital(q.name)),
+                f'<span class="nowrap">{esc(old)} \N{RIGHTWARDS ARROW} {esc(new)}</span>',
+                esc(format_percent(change, signed=True)),
+            )
+        )
+    caption = "In use: what either model predicts in a position loop of 10 V/m"
+    return table(caption, ("Quantity", "Predicted", "Change"), rows, "in-use")
 
 
 def gain_table(gains: Sequence[Gain], extended: str) -> str:
@@ -105,7 +140,7 @@ def _gain_rows(g: Gain, scale: Scale, extended: str) -> str:
     within = format_interval(-g.reduction_high, -g.reduction_low, signed=True)
     change = (
         f'<span class="reduction">{esc(format_percent(-g.reduction, signed=True))}</span> '
-        f'<span class="small">({esc(within)})</span>'
+        f'<span class="small nowrap">({esc(within)})</span>'
         if extended
         else ""
     )
@@ -168,14 +203,37 @@ def _unit(diagnosis: Diagnosis) -> str:
 
 
 def next_experiment(diagnosis: Diagnosis) -> str:
-    """The measurement that would teach most."""
-    title, plan = "What to measure next", diagnosis.next_experiment
+    """The measurement that would teach most, or what to do with the answer as it is."""
+    title, plan = "What to do next", diagnosis.next_experiment
     if plan is None:
-        return section("next", title, empty("No further measurement is proposed."))
+        text = _without_measuring(diagnosis)
+        return section("next", title, f'<div class="card plan"><p>{esc(text)}</p></div>')
     parts = [_identifier_label(identifier) for identifier in plan.separates]
     separates = f"<p>It would separate: {', '.join(parts)}.</p>" if parts else ""
-    body = f"<h3>{esc(capital(plan.title))}</h3><p>{esc(plan.purpose)}</p>{separates}"
+    carry = ""
+    if diagnosis.verdict == "unknown" and diagnosis.hidden is not None and not diagnosis.empirical:
+        carry = (
+            f"<p>Until it is found, <code>sms diagnose {esc(diagnosis.rig)} --empirical</code> carries the curve of "
+            "what is missing as a term, and measures what that is worth.</p>"
+        )
+    body = (
+        f"<h3>{esc(capital(plan.title))}</h3><p>{esc(capital(plan.purpose))}</p>{separates}{carry}"
+    )
     return section("next", title, f'<div class="card plan">{body}</div>')
+
+
+def _without_measuring(diagnosis: Diagnosis) -> str:
+    if diagnosis.causes:
+        return (
+            "No measurement is proposed: these records tell the explanation from all others that were tried. Look for "
+            "it on the machine and mend it; or keep it and simulate with extended.toml, written beside this page."
+        )
+    if diagnosis.verdict == "data-fault":
+        return "Mend what the data check found, then diagnose again."
+    return (
+        "Nothing is proposed. An effect too small for these records may still be there: "
+        f"sms limits {diagnosis.rig} says how small, and which experiment would show it."
+    )
 
 
 def _identifier_label(identifier: str) -> str:
