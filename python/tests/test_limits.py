@@ -33,8 +33,8 @@ def test_a_limit_is_three_standard_errors_and_grows_with_the_noise() -> None:
     run = kind.menu[0].simulated(rig, rig.start(), ("tank_pressure",))
     assert run is not None
     noise = {s: 1.0 for s in kind.outputs} | {"tank_pressure": 300.0}
-    quiet = limits_of(rig, kind, run, noise, effects)
-    loud = limits_of(rig, kind, run, noise | {"tank_pressure": 600.0}, effects)
+    quiet = limits_of(rig, kind, [run], noise, effects)
+    loud = limits_of(rig, kind, [run], noise | {"tank_pressure": 600.0}, effects)
     # In proportion to the noise, but for what is declared as uncertain, which noise does not change.
     for a, b in zip(quiet, loud, strict=True):
         assert a.size is not None and b.size is not None

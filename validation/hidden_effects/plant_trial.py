@@ -57,11 +57,11 @@ def hide(task: Task, out: Path, truth: Path) -> None:
     rng = np.random.default_rng([task.seed, 11])
     if task.sort == "catalogue":
         chosen: Any = None
-        pair, _ = draw_runs(task.kind, _runs_rng(task.seed))
+        pair, _ = draw_runs(task.kind, runs_rng(task.seed))
         keys = sorted(e.key for e in drawable(task.kind, pair, task.multiple))
         chosen = keys[int(rng.integers(len(keys)))]
     elif task.sort == "pair":
-        pair, _ = draw_runs(task.kind, _runs_rng(task.seed))
+        pair, _ = draw_runs(task.kind, runs_rng(task.seed))
         keys = sorted({e.key for e in drawable(task.kind, pair, task.multiple)})
         chosen = [str(k) for k in rng.choice(keys, 2, replace=False)]
     elif task.sort == "outside":
@@ -72,7 +72,7 @@ def hide(task: Task, out: Path, truth: Path) -> None:
     draw(task.kind, task.seed, out, truth, chosen, task.multiple)
 
 
-def _runs_rng(seed: int) -> np.random.Generator:
+def runs_rng(seed: int) -> np.random.Generator:
     """The generator's own stream for its runs, to know which excitations it will draw."""
     return np.random.default_rng(np.random.SeedSequence(seed).spawn(4)[2])
 

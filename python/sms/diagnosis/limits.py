@@ -116,7 +116,7 @@ def detection_limits(rig: Rig | str | Path, progress: Progress = lambda text, do
     for number, run in enumerate(records):
         progress(run.name, number / every)
         titles.append(run.name)
-        columns.append(limits_of(rig, kind, run, noise, effects))
+        columns.append(limits_of(rig, kind, [run], noise, effects))
     for number, experiment in enumerate(kind.menu, len(records)):
         progress(experiment.title, number / every)
         titles.append(experiment.title)
@@ -124,7 +124,7 @@ def detection_limits(rig: Rig | str | Path, progress: Progress = lambda text, do
         columns.append(
             [Limit(None, "a piston would leave its stroke")] * len(effects)
             if proposed is None
-            else limits_of(rig, kind, proposed, noise, effects)
+            else limits_of(rig, kind, [proposed], noise, effects)
         )
     rows = tuple(
         Row(effect, rig.table[effect.parameters[0]].unit, tuple(c[k] for c in columns))
@@ -165,10 +165,10 @@ def published_rig(kind: str) -> Rig:
 
 
 def limits_of(
-    rig: Rig, kind: Kind, run: Run, noise: dict[str, float], effects: Sequence[Effect]
+    rig: Rig, kind: Kind, records: Sequence[Run], noise: dict[str, float], effects: Sequence[Effect]
 ) -> list[Limit]:
-    """Of these effects in one record."""
-    runs = Runs(rig, (run,), noise, kind)
+    """Of these effects in one record, or in several together."""
+    runs = Runs(rig, tuple(records), noise, kind)
     baseline = baseline_hypothesis(Data(rig, runs, runs), effects)
     residual, nuisance = nuisance_at(
         runs.problem, baseline.start, list(baseline.free), baseline.known

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from validation.hidden_effects.detection_limits import limits_in_trials
 from validation.hidden_effects.plant_trial import (
     Outcome,
     Task,
@@ -123,3 +124,10 @@ def test_fresh_benches() -> None:
     ill = [o for o in outcomes if o.sort == "catalogue"]
     assert sum(o.right for o in ill) >= 0.7 * len(ill)
     assert all(o.right for o in outcomes if o.sort == "healthy")
+
+
+def test_a_trial_hides_no_less_than_the_core_can_see_of_its_records() -> None:
+    found = limits_in_trials("tank", ("strokes", "bursts"))
+    compared = [x.standard_errors for x in found.values() if x.standard_errors is not None]
+    assert len(compared) > 5
+    assert min(compared) > 5.0  # five standard errors of the trials' own simulator, or more
