@@ -2,8 +2,8 @@
 //
 // Where a lag lasts longer than a step of the simulation the reading is a state that follows, x' = (truth - x) / lag; a
 // delay by the same time differs from it by half its square times the acceleration. That is how a slow sensor and a late
-// clock are told apart. Play between rod and sensor is carried along; a window begins with the half that its first
-// velocity says.
+// clock are told apart. Play between rod and sensor is carried along; a window begins with the sensor pushed the way that
+// it moved last.
 #pragma once
 
 #include "estimation/bench_rates.hpp"
@@ -14,16 +14,21 @@ namespace estimation {
 
 template <typename S>
 struct ActuatorSensors {
-  // step: of the simulation, s.
-  ActuatorSensors(const Params<S>& p, const S& step)
+  // step: of the simulation, s. moved: 1 if the extension's reading rose last, -1 if it fell, 0 if that is not known.
+  ActuatorSensors(const Params<S>& p, const S& step, double moved = 0.0)
       : extension(p.sensor_lag_extension, step),
         lower(p.sensor_lag_chamber_pressure_lower, step),
-        upper(p.sensor_lag_chamber_pressure_upper, step) {}
+        upper(p.sensor_lag_chamber_pressure_upper, step),
+        pushed(moved) {}
 
   // The state a step after the last call, its rates, and the force that bends the mount and takes up the play, N.
   void follow(const Params<S>& p, const BenchState<S>& y, const BenchState<S>& rate, const S& force) {
-    truth = begun && !is_absent(p.backlash) ? played<S>(truth, yielded_extension<S>(p, y.extension, force), p.backlash)
-                                            : seen_extension<S>(p, y.extension, y.velocity, force);
+    const S eye = yielded_extension<S>(p, y.extension, force);
+    if (begun && !is_absent(p.backlash)) {
+      truth = played<S>(truth, eye, p.backlash);
+    } else {
+      truth = eye - S(0.5 * pushed) * p.backlash;
+    }
     begun = true;
     extension.follow(truth, y.velocity);
     lower.follow(y.actuator.lower.pressure, rate.actuator.lower.pressure);
@@ -44,6 +49,7 @@ struct ActuatorSensors {
   }
 
   detail::FollowingSensor<S> extension, lower, upper;
+  double pushed;
   S truth{0};  // what the extension's sensor would read without a lag
   bool begun = false;
 };

@@ -97,6 +97,11 @@ class BenchPlant {
   // Steps of integration from sample to sample, each within longest_step.
   int steps_over(double time) const { return std::max(1, static_cast<int>(std::ceil(time / longest_step_ - 1e-9))); }
 
+  // Which way the piston had gone last, by more than the noise.
+  double moved_last(const Eigen::VectorXd& extension, int sample) const {
+    return detail::moved_last(extension, sample, 6.0 * noise_.extension);
+  }
+
   // As simulate(), in `steps` steps a sample; drive_of(BenchRates, h) makes what drives the valve.
   template <typename S, typename DriveOf>
   void simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
@@ -184,7 +189,7 @@ void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, 
   const auto film_at = [&](const S& speed) {
     return film_is_late ? detail::lagging(film, state.velocity, speed, p.friction_lag, h) : speed;
   };
-  ActuatorSensors<S> sensors(p, h);
+  ActuatorSensors<S> sensors(p, h, is_absent(p.backlash) ? 0.0 : moved_last(record.extension, window.first));
   const S g = S(detail::kStiffShare) * h;
   const auto x = vector_of(state);
   for (int k = 0;; ++k) {

@@ -194,7 +194,14 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
     piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y, command, films,
                     hidden != nullptr ? push : nullptr, t, rate);
   };
-  PlatformSensors<S> sensors(machines, h);
+  Vec3<double> went = Vec3<double>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (!is_absent(machines.leg[i].backlash)) {
+      went(i) =
+          detail::moved_last(record.extension[static_cast<std::size_t>(i)], window.first, 6.0 * noise_.extension(i));
+    }
+  }
+  PlatformSensors<S> sensors(machines, h, went);
   const auto x = vector_of(state);
   for (int k = 0;; ++k) {
     rates_at(k, 0.0, state, film, k1);

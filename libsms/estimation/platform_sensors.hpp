@@ -25,9 +25,9 @@ PoseSeen<S> pose_seen(const PathPoint<S>& place, const Pistons<S>& state) {
 
 template <typename S>
 struct PlatformSensors {
-  // step: of the simulation, s.
-  PlatformSensors(const LegMachines<S>& machines, const S& step)
-      : leg{{machines.leg[0], step}, {machines.leg[1], step}, {machines.leg[2], step}},
+  // step: of the simulation, s. moved: which way the readings of extension went last, as ActuatorSensors has it.
+  PlatformSensors(const LegMachines<S>& machines, const S& step, const Vec3<double>& moved)
+      : leg{{machines.leg[0], step, moved(0)}, {machines.leg[1], step, moved(1)}, {machines.leg[2], step, moved(2)}},
         roll(machines.common.sensor_lag_roll, step),
         pitch(machines.common.sensor_lag_pitch, step) {}
 

@@ -95,6 +95,17 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
   return sample < 0 || sample >= measured.size() ? S(0) : S((predicted - S(measured[sample])) * S(1.0 / noise));
 }
 
+// Which way a signal had gone last at a sample, by more than `least`: 1 up, -1 down, 0 if it never did.
+inline double moved_last(const Eigen::VectorXd& signal, int sample, double least) {
+  for (int k = sample - 1; k >= 0; --k) {
+    const double gone = signal[sample] - signal[k];
+    if (std::abs(gone) > least) {
+      return gone > 0.0 ? 1.0 : -1.0;
+    }
+  }
+  return 0.0;
+}
+
 // Value at the first of some samples, by a parabola through them; its slope per second behind it.
 inline Eigen::Vector2d beginning(const Eigen::VectorXd& signal, int first, int samples, double step) {
   const int count = std::min<int>(samples, static_cast<int>(signal.size()) - first);

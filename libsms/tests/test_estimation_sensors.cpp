@@ -63,7 +63,7 @@ TEST_CASE("a lag shorter than a step is a delay, and the two meet where it is on
 TEST_CASE("play: the sensor rests while the rod crosses the gap, and lags half of it behind after") {
   sms::Params<double> p;
   p.backlash = 2e-3;
-  est::ActuatorSensors<double> sensors(p, kStep);
+  est::ActuatorSensors<double> sensors(p, kStep, 1.0);
   const sms::BenchState<double> rest{};
   const auto read = [&](double x, double v) {
     sensors.follow(p, at(x, v), rest, 0.0);
@@ -76,6 +76,16 @@ TEST_CASE("play: the sensor rests while the rod crosses the gap, and lags half o
   CHECK(read(0.1080, -0.5) == doctest::Approx(0.109));  // at the other side
   CHECK(read(0.1000, -0.5) == doctest::Approx(0.101));
   CHECK(read(0.1010, 0.5) == doctest::Approx(0.101));
+}
+
+TEST_CASE("which way a signal went last: by more than its noise, as far back as it takes") {
+  Eigen::VectorXd signal(8);
+  signal << 0.0, 1.0, 2.0, 1.9, 2.1, 2.0, 0.5, 0.6;
+  CHECK(est::detail::moved_last(signal, 0, 0.5) == 0.0);
+  CHECK(est::detail::moved_last(signal, 2, 0.5) == 1.0);
+  CHECK(est::detail::moved_last(signal, 5, 0.5) == 1.0);
+  CHECK(est::detail::moved_last(signal, 7, 0.5) == -1.0);
+  CHECK(est::detail::moved_last(signal, 7, 5.0) == 0.0);
 }
 
 TEST_CASE("good sensors: the truth, bit for bit, wherever the piston goes") {

@@ -32,16 +32,10 @@ S late_reading(const S& value, const S& rate, const S& late) {
   return value - late * rate;
 }
 
-// What a position sensor sees of the piston beside its mount; `force` is that of the cylinder on it, N.
+// Where the eye of a position sensor on this mount is; `force` is that of the cylinder on it, N.
 template <typename S>
 S yielded_extension(const Params<S>& p, const S& extension, const S& force) {
   return extension - p.frame_compliance * force;
-}
-
-// The same through the play, while the piston goes on at this velocity: half of the play behind.
-template <typename S>
-S seen_extension(const Params<S>& p, const S& extension, const S& velocity, const S& force) {
-  return yielded_extension(p, extension, force) - S(0.5) * p.backlash * friction_ramp(velocity, p.stiction_velocity);
 }
 
 // Where the sensor is when the eye it was at `before` has come to `now`.
