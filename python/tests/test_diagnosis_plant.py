@@ -14,6 +14,7 @@ from sms.diagnosis.catalogue import catalogue
 from sms.diagnosis.gauss_newton import Free, fit_windows
 from sms.diagnosis.localise import hats
 from sms.diagnosis.screening import Nuisance, project, screen
+from sms.io.signals import without_leg
 
 from validation.random_cases import draw
 
@@ -60,6 +61,16 @@ def test_missing_terms_are_neutral_by_default() -> None:
             if effect.kind == "missing":
                 # The first switches the term on; others only shape it.
                 assert params[effect.parameters[0]] == 0.0, effect.key
+
+
+def test_a_zero_error_has_a_size_beyond_which_it_is_none() -> None:
+    of_signal = {"extension": 0.05, "roll": 0.2, "pitch": 0.2, "tank_temperature": 20.0}
+    for kind in ("tank", "bench", "platform"):
+        for effect in catalogue(kind):
+            if effect.id == "sensor_offset":
+                assert effect.signal is not None
+                largest = of_signal.get(without_leg(effect.signal), 5e4)
+                assert effect.plausible_range(0.0) == (-largest, largest), effect.key
 
 
 # ---- numerics ------------------------------------------------------------------------------------

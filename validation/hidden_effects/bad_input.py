@@ -79,3 +79,28 @@ def declare(folder: Path, parameter: str, factor: float) -> None:
         raise ValueError(f"{path} does not declare {parameter}")
     wrong = f"{found[1]}{factor * float(found[2]):g}"
     path.write_text(text.replace(found[0], wrong))
+
+
+def leg_as_bench(seed: int, leg: int, folder: Path) -> Path:
+    """Records of one leg under a platform, and the rig file of a bench with nothing on its rod."""
+    platform = healthy("platform", seed, folder.with_name(folder.name + "_platform"))
+    folder = healthy("bench", seed, folder)
+    text = (folder / "rig.toml").read_text()
+    head = text.partition("[[records]]")[0]
+    for old in records(folder):
+        old.unlink()
+    entries = []
+    for path in records(platform):
+        role = path.stem.partition("_")[0]
+        names, *rows = path.read_text().splitlines()
+        keep = {
+            k: name.replace(f"_{leg} [", " [")
+            for k, name in enumerate(names.split(","))
+            if name.partition(" [")[0] in ("time", "supply_pressure") or f"_{leg} [" in name
+        }
+        cells = [[row.split(",")[k] for k in keep] for row in rows]
+        lines = [",".join(keep.values()), *(",".join(row) for row in cells)]
+        (folder / path.name).write_text("\n".join(lines) + "\n")
+        entries.append(f'[[records]]\nfile = "{path.name}"\nrole = "{role}"\n')
+    (folder / "rig.toml").write_text(head + "\n".join(entries))
+    return folder

@@ -98,7 +98,7 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
             ),
             block=entry["block"],
             needs=tuple(entry["needs"]),
-            plausible=(entry["plausible"][0], entry["plausible"][1]),
+            plausible=_plausible(entry["plausible"], place),
             confusable=tuple(entry.get("confusable", ())),
             of_sensor=of_sensor,
             step=entry.get("step"),
@@ -107,6 +107,14 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
             controller=entry.get("controller"),
             **text,
         )
+
+
+def _plausible(
+    said: list[float] | dict[str, list[float]], place: str | None
+) -> tuple[float, float]:
+    """The range of an entry, or its range for one signal, of whatever leg."""
+    low, high = said if isinstance(said, list) else said[without_leg(place or "")]
+    return low, high
 
 
 def _said(place: str | None) -> str | None:
