@@ -6,6 +6,7 @@ import importlib
 import secrets
 import sys
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any
@@ -42,7 +43,10 @@ def trials(
     workers: Annotated[int, typer.Option(min=1, help="Processes on this machine.")] = 2,
     scheduler: Annotated[
         str | None,
-        typer.Option(help="Address of a Dask scheduler (tcp://...); needs the extra sms[cluster]."),
+        typer.Option(
+            metavar="ADDRESS",
+            help='An existing Dask scheduler, "tcp://host:port", its workers started in a checkout of the project.',
+        ),
     ] = None,
 ) -> None:
     """Hide effects in virtual measurements, diagnose them blind, and write the confusion matrix.
@@ -88,9 +92,19 @@ def trials(
     console.print(f"[dim]written: {page}, {file}[/dim]")
 
 
-def _plant_trial() -> ModuleType:
+def trial_of_worker(checkout: str, task: dict[str, Any]) -> dict[str, Any]:
+    """One trial on a worker of a cluster: the fields of its outcome.
+
+    Workers know the package sms, not the virtual rigs: those come from the checkout in which a worker was started, or
+    from the one of the command, where both see the same files.
+    """
+    plant_trial = _plant_trial(Path(checkout))
+    return asdict(plant_trial.run_task(plant_trial.Task(**task)))
+
+
+def _plant_trial(otherwise: Path | None = None) -> ModuleType:
     """The trials' own module, from the checkout in which this command was called. InputError outside of one."""
-    checkout = _checkout(Path.cwd())
+    checkout = _checkout(Path.cwd()) or (_checkout(otherwise) if otherwise is not None else None)
     if checkout is None:
         raise InputError(
             f"{Path.cwd()} is not in a checkout of the project, where the virtual rigs are; "

@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from sms.cli_trials import trial_of_worker
+from sms.cluster import client_of
 from sms.diagnosis.catalogue import Effect, effects_of
 from sms.diagnosis.excess import Excess, excess_of
 from sms.diagnosis.hypothesis import fit
@@ -235,12 +237,13 @@ def run_tasks(
 
 def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[Outcome]:
     if scheduler is not None:
-        from distributed import Client  # noqa: PLC0415 (optional extra)
-        from distributed import as_completed as dask_completed  # noqa: PLC0415
+        with client_of(scheduler) as client:
+            from distributed import as_completed as finished  # noqa: PLC0415 (optional extra)
 
-        with Client(scheduler) as client:  # type: ignore[no-untyped-call]
-            for job in dask_completed(client.map(run_task, missing, pure=False)):  # type: ignore[no-untyped-call]
-                yield job.result()
+            jobs = [asdict(task) for task in missing]
+            here = [str(Path(__file__).parents[2])] * len(jobs)
+            for job in finished(client.map(trial_of_worker, here, jobs, pure=False)):  # type: ignore[no-untyped-call]
+                yield Outcome(**job.result())
         return
     with ProcessPoolExecutor(workers) as pool:
         jobs = {pool.submit(run_task, task): task for task in missing}

@@ -22,6 +22,7 @@ import numpy as np
 import pandas as pd
 
 from sms import StatusError
+from sms.cluster import client_of
 from sms.io.errors import InputError
 from sms.io.write import write_text_atomically
 from sms.parameters import PARAMETERS
@@ -221,21 +222,9 @@ def _on_cluster(
     sweep: Sweep, variants: list[int], scheduler: str
 ) -> Iterator[tuple[int, dict[str, Any]]]:
     """The same from the workers of a Dask cluster."""
-    try:
-        from distributed import Client  # noqa: PLC0415 (an extra)
-        from distributed import as_completed as finished  # noqa: PLC0415
-    except ImportError:
-        raise InputError(
-            'a Dask cluster needs one more package: pip install "sms[cluster]"'
-        ) from None
-    try:
-        client = Client(scheduler, timeout=5)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError) as problem:
-        raise InputError(
-            f"--scheduler {scheduler}: no Dask scheduler answers there ({problem}); start one with "
-            "`dask scheduler`"
-        ) from None
-    with client:
+    with client_of(scheduler) as client:
+        from distributed import as_completed as finished  # noqa: PLC0415 (an extra)
+
         futures = client.map(
             evaluate,
             [dict(sweep.tables)] * len(variants),

@@ -82,6 +82,23 @@ def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
     assert run_tasks(wanted, file, workers=1) == [done]
 
 
+@pytest.mark.full
+def test_on_a_dask_cluster_the_same_outcomes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its workers are processes of their own, started where there is no checkout."""
+    distributed = pytest.importorskip("distributed", reason="needs the extra sms[cluster]")
+    wanted = tasks("tank", 700, 3, 3.0)
+    here = run_tasks(wanted, tmp_path / "here.jsonl", workers=1)
+    monkeypatch.chdir(tmp_path)
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        there = run_tasks(wanted, tmp_path / "there.jsonl", 1, scheduler=address)
+    assert [replace(o, seconds=0.0) for o in there] == [replace(o, seconds=0.0) for o in here]
+
+
 @pytest.mark.parametrize("sort", ["healthy", "catalogue"])
 def test_one_drawn_bench_of_each_sort(sort: str) -> None:
     seed = {"healthy": 5001, "catalogue": 5002}[sort]
