@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -245,7 +246,9 @@ def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
             for job in finished(client.map(trial_of_worker, here, jobs, pure=False)):  # type: ignore[no-untyped-call]
                 yield Outcome(**job.result())
         return
-    with ProcessPoolExecutor(workers) as pool:
+    # A process is one core: new ones read this when they load their linear algebra, forked ones have it loaded.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         jobs = {pool.submit(run_task, task): task for task in missing}
         for job in as_completed(jobs):
             if (fault := job.exception()) is not None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +48,7 @@ class Screen:
         within = size * step * (2.0 * self.estimate - step)
         return np.asarray(np.where(self.gain > 0.0, np.maximum(within, 0.0), 0.0))
 
-    @property
+    @cached_property
     def cosine(self) -> Array:
         """(m, m): similarity of footprints, 0..1."""
         unit = self.footprint / np.maximum(np.linalg.norm(self.footprint, axis=0), 1e-300)

@@ -91,12 +91,11 @@ def _why_blind(effect: Effect, fitted: Fitted, data: Data, raw: Array, column: A
         )
     name = effect.parameters[0]
     low, high = effect.plausible_range(data.rig.declared(common_parameter(name)).value)
-    covariance = covariance_of(column[:, None], fitted.fit.residual, data.identify.block)
-    error = float(np.sqrt(covariance[0, 0]))
-    if (
-        data.identify.whitened
-    ):  # the residual still holds what the effect itself may have left there
+    if data.identify.whitened:  # the residual still holds what the effect itself may have left
         error = 1.0 / float(np.linalg.norm(column))
+    else:
+        covariance = covariance_of(column[:, None], fitted.fit.residual, data.identify.block)
+        error = float(np.sqrt(covariance[0, 0]))
     if error * DETECTION > max(abs(low), abs(high)):
         least = format_quantity(DETECTION * error, data.rig.table[name].unit, name)
         return f"these records would show it from {least} on only, more than is plausible"
