@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table
 
 from sms.progress import progress_bar
@@ -19,7 +20,7 @@ def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command(
         epilog="Examples: **sms limits bench** for the published machine with typical sensors; **sms limits rig.toml** "
-        "for your own machine, sensors and records. A bench takes half a minute, a platform longer."
+        "for your own machine, sensors and records. A bench takes half a minute, a platform one to three."
     )(limits)
 
 
@@ -52,7 +53,11 @@ def limits(
     console = Console()
     for number, title in enumerate(found.experiments, 1):
         console.print(f"{number}  {title}")
-    console.print(table_of(found))
+    table = table_of(found)
+    # Numbers are not cut: beyond the terminal's width lines wrap.
+    wide = console.options.update(max_width=1000)
+    console.width = max(console.width, Measurement.get(console, wide, table).maximum)
+    console.print(table)
     console.print(
         f"[dim]written: {out / 'limits.html'}, {out / 'limits.csv'}[/dim]", soft_wrap=True
     )
