@@ -29,8 +29,6 @@
 //   template <S> using Machine                          its parameters: Params<S>, or more than that (leg_params.hpp)
 //   template <S> void simulate(const Machine<S>&, const Window&, const S* start, S* residual) const
 //   int channels(record), start_scale(k)
-//   int kStart, kFelt; bool feels_all(params, Window)   of the kStart numbers of the initial state the first kFelt leave a
-//                                                       trace in any machine, the others only in one that feels all
 #pragma once
 
 #include <ceres/jet.h>
@@ -88,8 +86,6 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     }
     follow_.resize(windows_.size());
     found_.resize(windows_.size());
-    slopes_.resize(windows_.size());
-    in_vain_.assign(windows_.size(), 0.0);
   }
 
   int rows() const override { return rows_; }
@@ -104,15 +100,13 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     }
     in_parallel([&](std::size_t k) {
       const Window w = begun(params, k);
-      Shot shot = jacobian != nullptr ? search(params, w, k) : shoot(params, w, slopes_[k], false);
+      const Shot shot = jacobian != nullptr ? search(params, w) : shoot(params, w);
       residual->segment(w.row, w.rows) = shot.residual;
       found_[k] = shot.start;
       if (jacobian != nullptr) {
-        shot.factor();
         follow_[k] = differentiate(params, free, w, shot, jacobian);
         windows_[k].start = shot.start;
       }
-      slopes_[k].swap(shot.slopes);
     });
     last_ = params;
     if (jacobian != nullptr) {
@@ -125,7 +119,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   Eigen::VectorXd errors(const Machine<double>& params) const {
     Eigen::VectorXd out(rows_);
     in_parallel([&](std::size_t k) {
-      out.segment(windows_[k].row, windows_[k].rows) = shoot(params, begun(params, k), slopes_[k], false).residual;
+      out.segment(windows_[k].row, windows_[k].rows) = shoot(params, begun(params, k)).residual;
     });
     return out;
   }
@@ -133,7 +127,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // The best initial states at `params` become where later searches begin.
   void settle(const Machine<double>& params) {
     followed_.clear();
-    in_parallel([&](std::size_t k) { windows_[k].start = found_[k] = search(params, windows_[k], k).start; });
+    in_parallel([&](std::size_t k) { windows_[k].start = found_[k] = search(params, windows_[k]).start; });
     last_ = params;
   }
 
@@ -143,9 +137,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   RowMatrix hidden(const Machine<double>& params, int knots) const {
     RowMatrix out(rows_, Plant::kHidden * knots);
     in_parallel([&](std::size_t k) {
-      Shot shot = shoot(params, begun(params, k), slopes_[k], true);
-      shot.factor();
-      differentiate_hidden(params, knots, windows_[k], shot, &out);
+      differentiate_hidden(params, knots, windows_[k], shoot(params, begun(params, k)), &out);
     });
     return out;
   }
@@ -153,10 +145,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
  private:
   static constexpr int kStart = Plant::kStart;
   static constexpr int kWidth = 4;
-  // Of what a step promises: a step that brings less has slopes from too far away, or leads across a kink.
-  static constexpr double kKept = 0.25;
-  // Of what a window kept when its guess led nowhere: with more than this the guess is tried again.
-  static constexpr double kWorthAGuess = 1.5;
+  using StartJet = ceres::Jet<double, kStart>;
   using Jet = ceres::Jet<double, kWidth>;
   using StartMatrix = Eigen::Matrix<double, Eigen::Dynamic, kStart>;
 
@@ -164,19 +153,8 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   struct Shot {
     Eigen::VectorXd start;
     Eigen::VectorXd residual;
-    StartMatrix slopes;                                  // de/dz, here or where the search has been
-    Eigen::MatrixXd basis;                               // Q; basis and scaled by factor()
+    Eigen::MatrixXd basis;                               // Q
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> scaled;  // of de/dz in units of start_scale
-
-    void factor() {
-      Eigen::MatrixXd columns = slopes;
-      for (int k = 0; k < kStart; ++k) {
-        columns.col(k) *= Plant::start_scale(k);
-      }
-      scaled.setThreshold(1e-9);
-      scaled.compute(columns);
-      basis = scaled.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), scaled.rank());
-    }
 
     template <typename Columns>
     Columns off(const Columns& columns) const {
@@ -236,123 +214,82 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     return w;
   }
 
-  // Simulates with derivatives against the first kFelt numbers of the initial state; the others leave no trace.
-  template <int kFelt>
-  void with_slopes_of(const Machine<double>& params, const Window& w, Shot* shot) const {
-    using StartJet = ceres::Jet<double, (kFelt + 3) / 4 * 4>;  // whole AVX registers
-    std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
+  // Simulates with derivatives against the initial state.
+  void with_start(const Machine<StartJet>& params, const Window& w, const Eigen::VectorXd& start,
+                  std::vector<StartJet>* jets, Eigen::VectorXd* residual, StartMatrix* by_start) const {
     StartJet z[kStart];
     for (int k = 0; k < kStart; ++k) {
-      z[k] = k < kFelt ? StartJet(shot->start[k], k) : StartJet(shot->start[k]);
+      z[k] = StartJet(start[k], k);
     }
-    plant_.simulate(cast<StartJet>(params), w, z, jets.data());
-    shot->residual.resize(w.rows);
-    shot->slopes.setZero(w.rows, kStart);
+    plant_.simulate(params, w, z, jets->data());
     for (int row = 0; row < w.rows; ++row) {
-      const StartJet& jet = jets[static_cast<std::size_t>(row)];
-      shot->residual[row] = jet.a;
-      shot->slopes.row(row).template head<kFelt>() = jet.v.template head<kFelt>().transpose();
+      const StartJet& jet = (*jets)[static_cast<std::size_t>(row)];
+      (*residual)[row] = jet.a;
+      by_start->row(row) = jet.v.transpose();
     }
-  }
-
-  void with_slopes(const Machine<double>& params, const Window& w, Shot* shot) const {
-    if (plant_.feels_all(params, w)) {
-      with_slopes_of<kStart>(params, w, shot);
-    } else {
-      with_slopes_of<Plant::kFelt>(params, w, shot);
-    }
-  }
-
-  // Simulates in plain numbers.
-  void without_slopes(const Machine<double>& params, const Window& w, const Eigen::VectorXd& start,
-                      Eigen::VectorXd* residual) const {
-    residual->resize(w.rows);
-    plant_.simulate(params, w, start.data(), residual->data());
   }
 
   // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
-  //
-  // Plain numbers are ten times cheaper than derivatives, and the slopes of the last search are good for several steps:
-  // they are renewed where they promise what does not come. `own`: the shot ends with slopes of its own.
-  Shot shoot(const Machine<double>& params, const Window& w, const StartMatrix& slopes, bool own,
-             int most_steps = 16) const {
+  Shot shoot(const Machine<double>& params, const Window& w, int most_steps = 12) const {
     using Normal = Eigen::Matrix<double, kStart, kStart>;
-    Shot shot{w.start, {}, slopes, {}, {}};
-    bool here = slopes.rows() != w.rows;  // whether the slopes are those of this state
-    if (here) {
-      with_slopes(params, w, &shot);
-    } else {
-      without_slopes(params, w, shot.start, &shot.residual);
-    }
-    Eigen::VectorXd tried_residual;
+    const Machine<StartJet> cast_params = cast<StartJet>(params);
+    std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
+    Shot shot{w.start, Eigen::VectorXd(w.rows), {}, {}};
+    StartMatrix by_start(w.rows, kStart), tried_by_start(w.rows, kStart);
+    Eigen::VectorXd tried_residual(w.rows);
+    with_start(cast_params, w, shot.start, &jets, &shot.residual, &by_start);
     double damping = 1e-6;
     for (int step = 0; step < most_steps; ++step) {
       // The damping is relative to the size of each number, so that one without a trace stays where it is.
-      Normal normal = shot.slopes.transpose() * shot.slopes;
-      const Eigen::Matrix<double, kStart, 1> gradient = shot.slopes.transpose() * shot.residual;
+      Normal normal = by_start.transpose() * by_start;
+      const Eigen::Matrix<double, kStart, 1> gradient = by_start.transpose() * shot.residual;
       for (int k = 0; k < kStart; ++k) {
         normal(k, k) += damping * normal(k, k) + 1e-3 / (Plant::start_scale(k) * Plant::start_scale(k));
       }
       const Eigen::Matrix<double, kStart, 1> move = normal.ldlt().solve(gradient);
-      const double cost = shot.residual.squaredNorm(), promised = gradient.dot(move);
+      const double cost = shot.residual.squaredNorm();
       const double enough = options_.least_gain + options_.least_share * cost;
-      if (!(promised > enough)) {
-        if (here || !own) {
-          break;
-        }
-        with_slopes(params, w, &shot);
-        here = true;
-        continue;
+      if (!(gradient.dot(move) > enough)) {
+        break;
       }
       const Eigen::VectorXd tried = shot.start - move;
-      without_slopes(params, w, tried, &tried_residual);
+      with_start(cast_params, w, tried, &jets, &tried_residual, &tried_by_start);
       const double gain = cost - tried_residual.squaredNorm();
-      const bool left_from_here = here;
       if (gain > 0.0) {
         shot.start = tried;
         shot.residual.swap(tried_residual);
-        here = left_from_here && gain < enough;  // so near that the slopes are the same
+        by_start.swap(tried_by_start);
         damping = std::max(0.1 * damping, 1e-9);
-        if (here) {
+        if (gain < enough) {
           break;
         }
-      }
-      if (gain > kKept * promised) {
-        continue;
-      }
-      if (gain > 0.0 || !left_from_here) {
-        with_slopes(params, w, &shot);
-        here = true;
       } else if (damping > 1e3) {
         break;
       } else {
         damping = std::max(100.0 * damping, 1e-2);
       }
     }
-    if (own && !here) {
-      with_slopes(params, w, &shot);
+    Eigen::MatrixXd scaled = by_start;
+    for (int k = 0; k < kStart; ++k) {
+      scaled.col(k) *= Plant::start_scale(k);
     }
+    shot.scaled.setThreshold(1e-9);
+    shot.scaled.compute(scaled);
+    shot.basis = shot.scaled.householderQ() * Eigen::MatrixXd::Identity(w.rows, shot.scaled.rank());
     return shot;
   }
 
   // The better of two searches. One that begins where parameters far away have left it may end in a valley of its own,
-  // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too,
-  // unless that led nowhere when it was no better off.
-  Shot search(const Machine<double>& params, const Window& w, std::size_t k) const {
-    Shot shot = shoot(params, w, slopes_[k], true);
-    const double left = shot.residual.squaredNorm();
-    if (!(left > 4.0 * w.rows) || left < kWorthAGuess * in_vain_[k]) {
-      return shot;
+  // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too.
+  Shot search(const Machine<double>& params, const Window& w) const {
+    Shot shot = shoot(params, w);
+    if (shot.residual.squaredNorm() > 4.0 * w.rows) {
+      Window anew = w;
+      anew.start = plant_.guess(w.record, w.first);
+      constexpr int kMostSteps = 4;  // enough to see whether it leads elsewhere; the next search goes on from there
+      Shot other = shoot(params, anew, kMostSteps);
+      return other.residual.squaredNorm() < shot.residual.squaredNorm() ? other : shot;
     }
-    Window anew = w;
-    anew.start = plant_.guess(w.record, w.first);
-    constexpr int kMostSteps = 6;  // enough to see whether it leads elsewhere; the next search goes on from there
-    Shot other = shoot(params, anew, {}, false, kMostSteps);
-    if (other.residual.squaredNorm() < left) {
-      with_slopes(params, w, &other);
-      return other;
-    }
-    in_vain_[k] = left;
     return shot;
   }
 
@@ -418,8 +355,6 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   mutable std::vector<int> followed_;            // parameters of the last Jacobian
   mutable std::vector<Eigen::MatrixXd> follow_;  // how each window's start moves with them
   mutable std::vector<Eigen::VectorXd> found_;   // by the last evaluation
-  mutable std::vector<StartMatrix> slopes_;      // de/dz of each window where they were asked for last
-  mutable std::vector<double> in_vain_;          // chi-square of each window when a search from its guess was no better
 };
 
 }  // namespace estimation
