@@ -20,7 +20,7 @@ def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command(
         epilog="Examples: **sms limits bench** for the published machine with typical sensors; **sms limits rig.toml** "
-        "for your own machine, sensors and records. A bench takes half a minute, a platform one to three."
+        "for your own machine, sensors and records. A bench takes half a minute, a platform some minutes."
     )(limits)
 
 
