@@ -160,7 +160,7 @@ def test_the_example_says_what_is_wrong_with_its_tanks(case: str, tmp_path: Path
     if case == "healthy":
         assert answer.verdict == "no-evidence"
     elif case == "leak":
-        assert named == [{"leak_upper", "pump_gain"}]
+        assert named == [{"leak_upper"}]
         assert answer.causes[0].effect == "leak_upper"
         found = answer.causes[0].parameters[0]
         assert abs(found.value - tanks.LEAK) < 3.0 * found.standard_error

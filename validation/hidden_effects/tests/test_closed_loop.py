@@ -29,7 +29,7 @@ def test_the_loop_follows_its_set_point_and_holds_its_command(tmp_path: Path) ->
         table = dict(zip(head, np.loadtxt(path, delimiter=",", skiprows=1).T, strict=True))
         error = table["setpoint [m]"] - table["extension [m]"]
         command = table["valve_command [V]"]
-        assert np.std(error) < 0.06
+        assert np.std(error) < 0.95 * np.std(table["setpoint [m]"])  # a machine at rest: 1
         assert 0.0 < command.min() < 4.9 and 5.1 < command.max() < 10.0
         # Out of the dead band the sign of the command is that of what has to be made up for.
         far = np.abs(error) > 0.04
