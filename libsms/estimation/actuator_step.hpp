@@ -69,6 +69,12 @@ S seal_deviation(const Params<S>& p, const Piston<S>& piston, const S& by_law, c
   return force;
 }
 
+// Whether their deflection is a state.
+template <typename S>
+bool seals_deform(const Params<S>& p, FrictionLaw law) {
+  return law == FrictionLaw::dahl || law == FrictionLaw::lugre || !is_absent(p.presliding_share);
+}
+
 // ---- heat ----
 
 // heat_share lies between the polytropic law at constant temperature (0) and the energy equation with heat through the

@@ -10,7 +10,8 @@ namespace estimation {
 
 class BenchLoopPlant : public BenchPlant {
  public:
-  static constexpr int kStart = BenchPlant::kStart + 1;    // and the controller's integral, V
+  static constexpr int kStart = BenchPlant::kStart + 1;  // and the controller's integral, V
+  static constexpr int kFelt = kStart;
   static constexpr int kHidden = BenchPlant::kHidden + 1;  // and a voltage at the controller's output
 
   // said: the controller as declared, which tells where searches for the integral begin. std::invalid_argument for
@@ -21,6 +22,7 @@ class BenchLoopPlant : public BenchPlant {
   static double start_scale(int k) { return k < BenchPlant::kStart ? BenchPlant::start_scale(k) : 1.0; }
   int channels(int record) const { return BenchPlant::channels(record) + (of(record).command.size() > 0 ? 1 : 0); }
   Eigen::VectorXd guess(int record, int first) const;
+  bool feels_all(const Params<double>&, const Window&) const { return true; }
 
   template <typename S>
   void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,

@@ -46,5 +46,11 @@ Eigen::VectorXd BenchPlant::guess(int record, int first) const {
   return start;
 }
 
+bool BenchPlant::feels_all(const Params<double>& params, const Window& window) const {
+  const Params<double> p = in_run(params, of(window.record));
+  return p.supply_line_resistance > 0.0 || detail::seals_deform(p, laws_.friction) ||
+         BenchRates<double>(p, laws_).is_warm();
+}
+
 }  // namespace estimation
 }  // namespace sms

@@ -66,6 +66,7 @@ class BenchPlant {
   template <typename S>
   using Machine = Params<S>;
   static constexpr int kStart = 8;   // x, v, p_a, p_b, p_R, z, T_a - T, T_b - T
+  static constexpr int kFelt = 4;    // without droop, deflection and heat
   static constexpr int kHidden = 3;  // force, N; mass flow into the lower and into the upper chamber, kg/s
 
   // std::invalid_argument for arrays of different lengths or numbers that are not finite.
@@ -80,6 +81,8 @@ class BenchPlant {
   double step(int record) const { return of(record).step; }
   int channels(int record) const { return of(record).supply_pressure.size() > 0 ? 4 : 3; }
   Eigen::VectorXd guess(int record, int first) const;
+  // Whether reservoir, seals or temperatures begin with something of their own.
+  bool feels_all(const Params<double>& params, const Window& window) const;
 
   // Writes the whitened errors of one sample and returns where the next begin.
   template <typename S>
@@ -106,6 +109,14 @@ class BenchPlant {
   template <typename S, typename DriveOf>
   void simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
                        const S* start, S* residual, const S* hidden, int knots) const;
+
+  template <typename S>
+  static Params<S> in_run(Params<S> params, const BenchRecord& record) {
+    for (const auto& condition : record.conditions) {
+      param(params, condition.first) += S(condition.second);
+    }
+    return params;
+  }
 
  private:
   std::vector<BenchRecord> records_;
@@ -149,11 +160,7 @@ template <typename S, typename DriveOf>
 void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
                                  const S* start, S* residual, const S* hidden, int knots) const {
   const BenchRecord& record = of(window.record);
-  Params<S> in_this_run = params;
-  for (const auto& condition : record.conditions) {
-    param(in_this_run, condition.first) += S(condition.second);
-  }
-  const BenchRates<S> rate_of(in_this_run, laws_);
+  const BenchRates<S> rate_of(in_run(params, record), laws_);
   const Params<S>& p = rate_of.params();
   const bool droops = p.supply_line_resistance > S(0);
   const S h(record.step / steps);

@@ -61,5 +61,31 @@ MeasuredPath<double> measured_path(const Params<double>& p, MassModel masses, co
   return path;
 }
 
+std::shared_ptr<const MeasuredPath<double>> KnownPaths::of(int window, const Params<double>& p, MassModel masses,
+                                                           const MeasuredMotion& motion) {
+  std::vector<double> made_of = {static_cast<double>(masses)};
+  for (int k = 0; k < param_count; ++k) {
+    if (is_of_mechanism(k)) {
+      made_of.push_back(param(p, k));
+    }
+  }
+  for (std::size_t i = 0; i < motion.extension.size(); ++i) {
+    const Vec3<double>&extension = motion.extension[i], &rate = motion.rate[i];
+    made_of.insert(made_of.end(), extension.data(), extension.data() + 3);
+    made_of.insert(made_of.end(), rate.data(), rate.data() + 3);
+  }
+  {
+    const std::lock_guard<std::mutex> alone(mutex_);
+    const auto found = known_.find(window);
+    if (found != known_.end() && found->second.made_of == made_of) {
+      return found->second.path;
+    }
+  }
+  const auto path = std::make_shared<const MeasuredPath<double>>(measured_path(p, masses, motion));
+  const std::lock_guard<std::mutex> alone(mutex_);
+  known_[window] = {std::move(made_of), path};
+  return path;
+}
+
 }  // namespace estimation
 }  // namespace sms

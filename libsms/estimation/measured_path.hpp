@@ -15,6 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "sms/integrate.hpp"
@@ -48,6 +51,21 @@ struct MeasuredMotion {
 
 MeasuredPath<double> measured_path(const Params<double>& p, MassModel masses, const MeasuredMotion& motion);
 
+// The last path of each window, a number of its own: while what it is made of stays, so does the path. Any thread.
+class KnownPaths {
+ public:
+  std::shared_ptr<const MeasuredPath<double>> of(int window, const Params<double>& p, MassModel masses,
+                                                 const MeasuredMotion& motion);
+
+ private:
+  struct Known {
+    std::vector<double> made_of;
+    std::shared_ptr<const MeasuredPath<double>> path;
+  };
+  std::mutex mutex_;
+  std::map<int, Known> known_;
+};
+
 // ---- with derivatives ----
 //
 // Only gravity, joints and bodies move the path. Against them it is differenced, both ways: a few runs of the mechanism in
@@ -66,15 +84,16 @@ Params<ValueOf<S>> plain_params(const Params<S>& p) {
   return value;
 }
 
-inline MeasuredPath<double> measured_path_with_slopes(const Params<double>& p, MassModel masses,
-                                                      const MeasuredMotion& motion) {
-  return measured_path(p, masses, motion);
+// here: the path in plain numbers.
+inline const MeasuredPath<double>& path_with_slopes(const MeasuredPath<double>& here, const Params<double>&, MassModel,
+                                                    const MeasuredMotion&) {
+  return here;
 }
 
 template <typename Jet>
-MeasuredPath<Jet> measured_path_with_slopes(const Params<Jet>& p, MassModel masses, const MeasuredMotion& motion) {
+MeasuredPath<Jet> path_with_slopes(const MeasuredPath<double>& here, const Params<Jet>& p, MassModel masses,
+                                   const MeasuredMotion& motion) {
   const Params<double> plain = plain_params(p);
-  const MeasuredPath<double> here = measured_path(plain, masses, motion);
   MeasuredPath<Jet> path{std::vector<PathPoint<Jet>>(here.points.size()), here.leaning.cast<Jet>()};
   for (std::size_t i = 0; i < here.points.size(); ++i) {
     vector_of(path.points[i]) = vector_of(here.points[i]).template cast<Jet>();

@@ -59,7 +59,9 @@ void PlatformEquations::errors(const LegParams<S>& params, S* out) const {
   for (int k = 0; k < samples(); ++k) {
     truths.push_back(truths_at(machines, signals_, k));
   }
-  const MeasuredPath<S> path = measured_path_with_slopes(common, masses_, motion_of(truths));
+  const MeasuredMotion motion = motion_of(truths);
+  const MeasuredPath<double> here = measured_path(plain_params(common), masses_, motion);
+  const MeasuredPath<S>& path = path_with_slopes(here, common, masses_, motion);
   const SensorErrors<S> of_roll{common.sensor_gain_roll, common.sensor_offset_roll,
                                 common.clock_skew_attitude + common.sensor_lag_roll};
   const SensorErrors<S> of_pitch{common.sensor_gain_pitch, common.sensor_offset_pitch,

@@ -64,9 +64,12 @@ MeasuredMotion smoothed(const PlatformRecord& record) {
 PlatformPlant::PlatformPlant(std::vector<PlatformRecord> records, const PlatformNoise& noise, const ActuatorLaws& laws,
                              MassModel masses, double longest_step)
     : records_(std::move(records)), noise_(noise), laws_(laws), masses_(masses), longest_step_(longest_step) {
+  int samples_before = 0;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     check(records_[i], i);
     measured_.push_back(smoothed(records_[i]));
+    first_of_.push_back(samples_before);
+    samples_before += samples(static_cast<int>(i));
   }
 }
 
@@ -84,6 +87,15 @@ Eigen::VectorXd PlatformPlant::guess(int record, int first) const {
     start[12 + i] = r.supply_pressure.size() > 0 ? r.supply_pressure[first] : 4e5;
   }
   return start;
+}
+
+bool PlatformPlant::feels_all(const LegParams<double>& params, const Window& window) const {
+  const LegMachines<double> machines = machines_of(params, of(window.record).conditions);
+  bool all = false;
+  for (const Params<double>& p : machines.leg) {
+    all = all || p.supply_line_resistance > 0.0 || detail::seals_deform(p, laws_.friction);
+  }
+  return all;
 }
 
 MeasuredMotion PlatformPlant::motion(const Params<double> (&leg)[3], const Window& window) const {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,7 @@ class PlatformPlant {
   template <typename S>
   using Machine = LegParams<S>;
   static constexpr int kStart = 18;  // three each of x, v, p_a, p_b, p_R, z
+  static constexpr int kFelt = 12;   // without droop and deflection
   static constexpr int kHidden = 9;  // three each of force, N; mass flow into lower and into upper chamber, kg/s
 
   // std::invalid_argument for arrays of different lengths, numbers that are not finite, extensions that are no pose.
@@ -68,6 +70,8 @@ class PlatformPlant {
     return 9 + (of(record).supply_pressure.size() > 0 ? 1 : 0) + (of(record).roll.size() > 0 ? 2 : 0);
   }
   Eigen::VectorXd guess(int record, int first) const;
+  // Whether reservoirs or seals begin with something of their own.
+  bool feels_all(const LegParams<double>& params, const Window& window) const;
 
   // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
   template <typename S>
@@ -87,6 +91,8 @@ class PlatformPlant {
 
   std::vector<PlatformRecord> records_;
   std::vector<MeasuredMotion> measured_;  // one a record, smoothed
+  std::vector<int> first_of_;             // samples of the records before
+  std::shared_ptr<KnownPaths> paths_ = std::make_shared<KnownPaths>();
   PlatformNoise noise_;
   ActuatorLaws laws_;
   MassModel masses_;
@@ -144,7 +150,10 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
   const LegMachines<S> machines = machines_of(params, record.conditions);
   const Params<double> plain[3] = {plain_params(machines.leg[0]), plain_params(machines.leg[1]),
                                    plain_params(machines.leg[2])};
-  const MeasuredPath<S> path = measured_path_with_slopes(machines.common, masses_, motion(plain, window));
+  const MeasuredMotion measured = motion(plain, window);
+  const auto known = paths_->of(first_of_[static_cast<std::size_t>(window.record)] + window.first,
+                                plain_params(machines.common), masses_, measured);
+  const MeasuredPath<S>& path = path_with_slopes(*known, machines.common, masses_, measured);
   const int steps = std::max(1, static_cast<int>(std::ceil(record.step / longest_step_ - 1e-9)));
   const S h(record.step / steps);
   const S g = S(detail::kStiffShare) * h;

@@ -29,6 +29,8 @@
 //   template <S> using Machine                          its parameters: Params<S>, or more than that (leg_params.hpp)
 //   template <S> void simulate(const Machine<S>&, const Window&, const S* start, S* residual) const
 //   int channels(record), start_scale(k)
+//   int kStart, kFelt; bool feels_all(params, Window)   of the kStart numbers of the initial state the first kFelt leave a
+//                                                       trace in any machine, the others only in one that feels all
 #pragma once
 
 #include <ceres/jet.h>
@@ -100,10 +102,12 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     }
     in_parallel([&](std::size_t k) {
       const Window w = begun(params, k);
-      const Shot shot = jacobian != nullptr ? search(params, w) : shoot(params, w);
+      Shot shot = jacobian != nullptr ? search(params, w) : shoot(params, w);
       residual->segment(w.row, w.rows) = shot.residual;
       found_[k] = shot.start;
       if (jacobian != nullptr) {
+        find_slopes(params, w, &shot);
+        shot.factor();
         follow_[k] = differentiate(params, free, w, shot, jacobian);
         windows_[k].start = shot.start;
       }
@@ -137,7 +141,10 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   RowMatrix hidden(const Machine<double>& params, int knots) const {
     RowMatrix out(rows_, Plant::kHidden * knots);
     in_parallel([&](std::size_t k) {
-      differentiate_hidden(params, knots, windows_[k], shoot(params, begun(params, k)), &out);
+      Shot shot = shoot(params, begun(params, k));
+      find_slopes(params, windows_[k], &shot);
+      shot.factor();
+      differentiate_hidden(params, knots, windows_[k], shot, &out);
     });
     return out;
   }
@@ -145,7 +152,6 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
  private:
   static constexpr int kStart = Plant::kStart;
   static constexpr int kWidth = 4;
-  using StartJet = ceres::Jet<double, kStart>;
   using Jet = ceres::Jet<double, kWidth>;
   using StartMatrix = Eigen::Matrix<double, Eigen::Dynamic, kStart>;
 
@@ -153,8 +159,20 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   struct Shot {
     Eigen::VectorXd start;
     Eigen::VectorXd residual;
-    Eigen::MatrixXd basis;                               // Q
+    StartMatrix slopes;                                  // de/dz
+    bool has_slopes = false;                             // of this state, and not of one the search has left
+    Eigen::MatrixXd basis;                               // Q; basis and scaled by factor()
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> scaled;  // of de/dz in units of start_scale
+
+    void factor() {
+      Eigen::MatrixXd columns = slopes;
+      for (int k = 0; k < kStart; ++k) {
+        columns.col(k) *= Plant::start_scale(k);
+      }
+      scaled.setThreshold(1e-9);
+      scaled.compute(columns);
+      basis = scaled.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), scaled.rank());
+    }
 
     template <typename Columns>
     Columns off(const Columns& columns) const {
@@ -214,53 +232,79 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     return w;
   }
 
-  // Simulates with derivatives against the initial state.
-  void with_start(const Machine<StartJet>& params, const Window& w, const Eigen::VectorXd& start,
-                  std::vector<StartJet>* jets, Eigen::VectorXd* residual, StartMatrix* by_start) const {
+  // Simulates with derivatives against the first kFelt numbers of the initial state; the others leave no trace.
+  template <int kFelt>
+  void find_slopes_of(const Machine<double>& params, const Window& w, Shot* shot) const {
+    using StartJet = ceres::Jet<double, (kFelt + 3) / 4 * 4>;  // whole AVX registers
+    std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
     StartJet z[kStart];
     for (int k = 0; k < kStart; ++k) {
-      z[k] = StartJet(start[k], k);
+      z[k] = k < kFelt ? StartJet(shot->start[k], k) : StartJet(shot->start[k]);
     }
-    plant_.simulate(params, w, z, jets->data());
+    plant_.simulate(cast<StartJet>(params), w, z, jets.data());
+    shot->residual.resize(w.rows);
+    shot->slopes.setZero(w.rows, kStart);
     for (int row = 0; row < w.rows; ++row) {
-      const StartJet& jet = (*jets)[static_cast<std::size_t>(row)];
-      (*residual)[row] = jet.a;
-      by_start->row(row) = jet.v.transpose();
+      const StartJet& jet = jets[static_cast<std::size_t>(row)];
+      shot->residual[row] = jet.a;
+      shot->slopes.row(row).template head<kFelt>() = jet.v.template head<kFelt>().transpose();
     }
   }
 
-  // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
-  Shot shoot(const Machine<double>& params, const Window& w, int most_steps = 12) const {
-    using Normal = Eigen::Matrix<double, kStart, kStart>;
-    const Machine<StartJet> cast_params = cast<StartJet>(params);
-    std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
-    Shot shot{w.start, Eigen::VectorXd(w.rows), {}, {}};
-    StartMatrix by_start(w.rows, kStart), tried_by_start(w.rows, kStart);
-    Eigen::VectorXd tried_residual(w.rows);
-    with_start(cast_params, w, shot.start, &jets, &shot.residual, &by_start);
-    double damping = 1e-6;
-    for (int step = 0; step < most_steps; ++step) {
-      // The damping is relative to the size of each number, so that one without a trace stays where it is.
-      Normal normal = by_start.transpose() * by_start;
-      const Eigen::Matrix<double, kStart, 1> gradient = by_start.transpose() * shot.residual;
+  void find_slopes(const Machine<double>& params, const Window& w, Shot* shot) const {
+    if (shot->has_slopes) {
+      return;
+    }
+    if (plant_.feels_all(params, w)) {
+      find_slopes_of<kStart>(params, w, shot);
+    } else {
+      find_slopes_of<Plant::kFelt>(params, w, shot);
+    }
+    shot->has_slopes = true;
+  }
+
+  // A step from a state, and how much of chi-square it promises to take. The damping is relative to the size of each
+  // number, so that one without a trace stays where it is.
+  struct Step {
+    Eigen::Matrix<double, kStart, 1> move;
+    double promised;
+
+    Step(const StartMatrix& slopes, const Eigen::VectorXd& residual, double damping) {
+      Eigen::Matrix<double, kStart, kStart> normal = slopes.transpose() * slopes;
+      const Eigen::Matrix<double, kStart, 1> gradient = slopes.transpose() * residual;
       for (int k = 0; k < kStart; ++k) {
         normal(k, k) += damping * normal(k, k) + 1e-3 / (Plant::start_scale(k) * Plant::start_scale(k));
       }
-      const Eigen::Matrix<double, kStart, 1> move = normal.ldlt().solve(gradient);
+      move = -normal.ldlt().solve(gradient);
+      promised = -gradient.dot(move);
+    }
+  };
+
+  double enough(double cost) const { return options_.least_gain + options_.least_share * cost; }
+
+  // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions). A state is tried in
+  // plain numbers, which are ten times cheaper; slopes are worked out where the search goes on from.
+  Shot shoot(const Machine<double>& params, const Window& w, int most_steps = 12) const {
+    Shot shot;
+    shot.start = w.start;
+    Eigen::VectorXd tried_residual(w.rows);
+    double damping = 1e-6;
+    for (int k = 0; k < most_steps; ++k) {
+      find_slopes(params, w, &shot);
+      const Step step(shot.slopes, shot.residual, damping);
       const double cost = shot.residual.squaredNorm();
-      const double enough = options_.least_gain + options_.least_share * cost;
-      if (!(gradient.dot(move) > enough)) {
+      if (!(step.promised > enough(cost))) {
         break;
       }
-      const Eigen::VectorXd tried = shot.start - move;
-      with_start(cast_params, w, tried, &jets, &tried_residual, &tried_by_start);
+      const Eigen::VectorXd tried = shot.start + step.move;
+      plant_.simulate(params, w, tried.data(), tried_residual.data());
       const double gain = cost - tried_residual.squaredNorm();
       if (gain > 0.0) {
         shot.start = tried;
         shot.residual.swap(tried_residual);
-        by_start.swap(tried_by_start);
+        shot.has_slopes = false;
         damping = std::max(0.1 * damping, 1e-9);
-        if (gain < enough) {
+        if (gain < enough(cost)) {
           break;
         }
       } else if (damping > 1e3) {
@@ -269,13 +313,6 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
         damping = std::max(100.0 * damping, 1e-2);
       }
     }
-    Eigen::MatrixXd scaled = by_start;
-    for (int k = 0; k < kStart; ++k) {
-      scaled.col(k) *= Plant::start_scale(k);
-    }
-    shot.scaled.setThreshold(1e-9);
-    shot.scaled.compute(scaled);
-    shot.basis = shot.scaled.householderQ() * Eigen::MatrixXd::Identity(w.rows, shot.scaled.rank());
     return shot;
   }
 

@@ -41,7 +41,8 @@ class TankPlant {
  public:
   template <typename S>
   using Machine = Params<S>;
-  static constexpr int kStart = 4;   // p, T, p_R, T_tc
+  static constexpr int kStart = 4;  // p, T, p_R, T_tc
+  static constexpr int kFelt = kStart;
   static constexpr int kHidden = 2;  // mass flow into the tank, kg/s; pressure at the head of the supply line, Pa
 
   // std::invalid_argument for arrays of different lengths or numbers that are not finite.
@@ -59,6 +60,7 @@ class TankPlant {
     return 1 + (of(record).temperature.size() > 0 ? 1 : 0) + (of(record).supply_pressure.size() > 0 ? 1 : 0);
   }
   Eigen::VectorXd guess(int record, int first) const;
+  bool feels_all(const Params<double>&, const Window&) const { return true; }
 
   // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
   template <typename S>

@@ -228,6 +228,36 @@ TEST_CASE("a clock that is late by whole samples is taken by the index") {
   CHECK(with.norm() < 5.0);
 }
 
+TEST_CASE("droop, deflection and heat are felt at the start by those machines only that are said to") {
+  const sms::Params<double> p;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(40);
+  const est::BenchPlant plant({{kStep, command(40), zero, zero, zero, {}, {}}}, unit_noise, sms::published_laws(),
+                              1e-3);
+  const est::Window window{0, 0, 40, 0, 120, {}};
+  const auto moves = [&](const sms::Params<double>& with, int number) {
+    double start[est::BenchPlant::kStart] = {0.2, 0.0, 2.6e5, 2.9e5, 4e5, 0.0, 0.0, 0.0};
+    Eigen::VectorXd plain(120), moved(120);
+    plant.simulate(with, window, start, plain.data());
+    start[number] += est::BenchPlant::start_scale(number);
+    plant.simulate(with, window, start, moved.data());
+    return (moved - plain).cwiseAbs().maxCoeff() > 0.0;
+  };
+  CHECK_FALSE(plant.feels_all(p, window));
+  for (int k = 0; k < est::BenchPlant::kStart; ++k) {
+    CAPTURE(k);
+    CHECK(moves(p, k) == (k < est::BenchPlant::kFelt));
+  }
+  for (const auto& one :
+       {std::make_pair(sms::index_of_supply_line_resistance, 4), std::make_pair(sms::index_of_presliding_share, 5),
+        std::make_pair(sms::index_of_heat_share, 6), std::make_pair(sms::index_of_heat_share, 7)}) {
+    CAPTURE(one.second);
+    sms::Params<double> more = p;
+    sms::param(more, one.first) = one.first == sms::index_of_supply_line_resistance ? 1e6 : 0.5;
+    CHECK(plant.feels_all(more, window));
+    CHECK(moves(more, one.second));
+  }
+}
+
 TEST_CASE("what cannot be a record is refused") {
   const Eigen::VectorXd good = Eigen::VectorXd::Constant(100, 5.0), bad = Eigen::VectorXd::Constant(99, 5.0);
   const auto make = [](const est::BenchRecord& record) {

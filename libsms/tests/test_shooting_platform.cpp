@@ -163,6 +163,60 @@ TEST_CASE("platform: what one leg has more is in its own readings first") {
   }
 }
 
+TEST_CASE("platform: droop and deflection are felt at the start by those machines only that are said to") {
+  const est::PlatformRecord record = simulated(sms::LegParams<double>());
+  const est::PlatformPlant plant({record}, noise(), laws, sms::MassModel::corrected, 2.5e-3);
+  const int rows = 20 * plant.channels(0);
+  const est::Window window{0, 20, 20, 0, rows, plant.guess(0, 20)};
+  const auto moves = [&](const sms::LegParams<double>& p, int number) {
+    Eigen::VectorXd start = window.start, plain(rows), moved(rows);
+    plant.simulate(p, window, start.data(), plain.data());
+    start[number] += est::PlatformPlant::start_scale(number);
+    plant.simulate(p, window, start.data(), moved.data());
+    return (moved - plain).cwiseAbs().maxCoeff();
+  };
+  sms::LegParams<double> p;
+  CHECK_FALSE(plant.feels_all(p, window));
+  for (int k = 0; k < est::PlatformPlant::kStart; ++k) {
+    CAPTURE(k);
+    CHECK((moves(p, k) > 0.0) == (k < est::PlatformPlant::kFelt));
+  }
+  p.shift[1].presliding_share = 0.5;
+  CHECK(plant.feels_all(p, window));
+  CHECK(moves(p, 16) > 0.0);
+  p.shift[1].presliding_share = 0.0;
+  p.supply_line_resistance = 1e6;
+  CHECK(plant.feels_all(p, window));
+  CHECK(moves(p, 12) > 0.0);
+}
+
+TEST_CASE("platform: a path that is remembered follows mechanism and sensors") {
+  const est::PlatformRecord record = simulated(sms::LegParams<double>());
+  const auto make = [&record] {
+    return est::PlatformPlant({record}, noise(), laws, sms::MassModel::corrected, 2.5e-3);
+  };
+  const est::PlatformPlant plant = make();
+  const int rows = 20 * plant.channels(0);
+  const auto readings = [rows](const est::PlatformPlant& of, const sms::LegParams<double>& p, int first) {
+    const est::Window window{0, first, 20, 0, rows, of.guess(0, first)};
+    Eigen::VectorXd out(rows);
+    of.simulate(p, window, window.start.data(), out.data());
+    return out;
+  };
+  for (const int changed : {sms::index_of_payload_mass, sms::index_of_gravity, sms::index_of_sensor_gain_extension,
+                            sms::index_of_clock_skew_extension, sms::index_of_coulomb_force}) {
+    CAPTURE(std::string(sms_param_describe(changed)->name));
+    sms::LegParams<double> p;
+    sms::param(p, changed) += 0.01;
+    for (const int first : {20, 60}) {
+      const Eigen::VectorXd before = readings(plant, sms::LegParams<double>(), first),
+                            after = readings(plant, p, first);
+      CHECK((after - before).cwiseAbs().maxCoeff() > 0.0);
+      CHECK((after - readings(make(), p, first)).cwiseAbs().maxCoeff() <= 0.0);
+    }
+  }
+}
+
 TEST_CASE("platform: bad records are refused") {
   est::PlatformRecord record = simulated(sms::LegParams<double>());
   const auto refused = [](const est::PlatformRecord& r) {
