@@ -100,6 +100,7 @@ def cause_from(
         if len(members) > 1
         else "",
         support=sum(m.support for m in members),
+        crosswise=first.crosswise,
     )
 
 

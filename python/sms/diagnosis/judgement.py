@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from sms.diagnosis import crosswise
 from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.diagnosis.result import Array
 from sms.diagnosis.runs import Runs
@@ -21,6 +22,8 @@ WORTH_OF_NOISE = 0.02
 """The same, as a share of the noise floor itself: a healthy machine has hardly any error beyond it."""
 WORTH_OF_LEFT = 0.5
 """Share of what the model as it stands leaves beyond the noise, which is worth a name whatever the original was."""
+NO_HELP = "does not help on the records it has not seen"
+WORTH_NOTHING = "real, but worth next to nothing on the records it has not seen"
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,11 @@ def judge(
         trial.gain = 1.0 - float(np.mean(trial.squared)) / total
         trial.gain_interval = interval(1.0 - after / resampled_before)
         trial.reason = _objection(trial, before, data, yardstick)
+        if trial.reason in (NO_HELP, WORTH_NOTHING) and _not_felt(trial, current, data, yardstick):
+            trial.crosswise = True
+            trial.reason = crosswise.objection(
+                trial.fitted, current, data, yardstick.floor, rng.spawn(1)[0]
+            )
         trial.accepted = not trial.reason
 
 
@@ -70,18 +78,26 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
     if not low <= value <= high:
         return f"fits only with {format_quantity(value, data.rig.table[name].unit, name)}, which is not plausible"
     if trial.gain_interval[0] <= 0.0:
-        return "does not help on the records it has not seen"
+        return NO_HELP
     worth = float(np.mean(before) - np.mean(trial.squared))
     least = yardstick.least_worth
     if data.validate.whitened:  # a large error that is already named must not hide a second one
         least = min(least, WORTH_OF_LEFT * max(float(np.mean(before)) - yardstick.floor, 0.0))
     if worth < max(least, WORTH_OF_NOISE * yardstick.floor):
-        return "real, but worth next to nothing on the records it has not seen"
+        return WORTH_NOTHING
     for number, name_ in enumerate(m.name for m in data.validate.motions):
         rows = data.validate.record == number
         if float(np.mean(trial.squared[rows]) - np.mean(before[rows])) > worth:
             return f"makes '{name_}' worse by more than it gains elsewhere"
     return ""
+
+
+def _not_felt(trial: Trial, current: Fitted, data: Data, yardstick: Yardstick) -> bool:
+    """Whether unseen records change less with the trial than two honest descriptions differ by, and no worse for it."""
+    if not isinstance(data.validate, Runs) or trial.gain_interval[1] < 0.0:
+        return False
+    honest = data.validate.kind.honest[0] * yardstick.floor
+    return crosswise.felt(trial.fitted, current, data) < honest
 
 
 def best_class(
@@ -155,10 +171,18 @@ def _best_of_runs(
         worse = left[trial.effect.key] - left[best.effect.key]
         out = told_apart(worse, least if alike else 0.0)
         if not alike:
-            out = out or trial.gain < 0.9 * best.gain
+            out = out or _takes_less(trial, best, before, left)
         if trial is best or not out:
             members.append(trial)
     return sorted(members, key=lambda t: t is not best)
+
+
+def _takes_less(trial: Trial, best: Trial, before: Array, left: Mapping[str, Array]) -> bool:
+    """Whether a rival takes less than nine tenths: of the unseen records' error, or of all where they do not feel it."""
+    if not (trial.crosswise or best.crosswise):
+        return trial.gain < 0.9 * best.gain
+    takes, most = (float((before - left[t.effect.key]).sum()) for t in (trial, best))
+    return takes < 0.9 * most
 
 
 def told_apart(worse: Array, least: float) -> bool:

@@ -10,7 +10,7 @@ from sms.diagnosis.excess import Excess
 from sms.diagnosis.localise import alike
 from sms.diagnosis.result import Cause, FedEquations, Finding, Gain, Hidden, Verdict
 from sms.diagnosis.size import OtherLaw
-from sms.diagnosis.words import capital, chosen_again, explained
+from sms.diagnosis.words import capital, chosen_again, explained, judged_crosswise
 from sms.parameters import Parameter
 from sms.units_display import format_aligned, format_percent, format_quantity
 from sms.units_display import words as spaced
@@ -116,7 +116,8 @@ def conclusion(
     """What an engineer would conclude, a sentence each; `nearest` is what comes closest to an unknown."""
     out = []
     if verdict in ("cause", "class", "combination"):
-        out += [_worth(gain)]
+        out += [judged_crosswise(c) for c in causes if c.crosswise]
+        out += [] if all(c.crosswise for c in causes) else [_worth(gain)]
         shares = format_percent(max(0.0, 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)))
         out.append(f"Of the error that is not noise, {shares} is explained.")
         out.append(chosen_again(causes, "windows"))

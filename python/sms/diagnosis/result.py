@@ -57,6 +57,8 @@ class Cause:
     """The measurement that would tell the members apart, empty for a single cause."""
     support: float
     """Share of 999 resamples of the windows or strokes in which the choice of its round falls on it, 0..1."""
+    crosswise: bool = False
+    """Whether the records kept aside do not feel it: judged by how the fitted records predict each other."""
 
 
 @dataclass(frozen=True)

@@ -63,6 +63,8 @@ class Trial:
     """(rows,) squared residuals on the identify records, where both count in the comparison of rivals."""
     support: float = 0.0
     """Share of resamples of the windows or strokes in which it is the best of its round."""
+    crosswise: bool = False
+    """Whether the records kept aside do not feel it: then the fitted ones are held against each other (crosswise.py)."""
 
 
 def try_effects(

@@ -145,4 +145,5 @@ def _in_place(member: Trial, fitted: Fitted, data: Data) -> Trial:
         accepted=True,
         identified=fitted.fit.residual**2,
         support=member.support,
+        crosswise=member.crosswise,
     )

@@ -151,6 +151,14 @@ def conclusion(
     return tuple(out)
 
 
+def judged_crosswise(cause: Cause) -> str:
+    """What to say of a cause that the records kept aside cannot judge."""
+    return (
+        f"{capital(cause.title)}: the records kept aside do not feel it. It is judged by the fitted ones, each part of "
+        "them predicted with the size that the rest asks for; a record that feels it would be a better judge."
+    )
+
+
 def chosen_again(causes: Sequence[Cause], unit: str) -> str:
     """How often the same is chosen when what was judged by is drawn anew, `unit` by unit."""
     if len(causes) == 1:

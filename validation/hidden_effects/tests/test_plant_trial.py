@@ -106,6 +106,17 @@ def test_one_drawn_bench_of_each_sort(sort: str) -> None:
     assert found.right, found
 
 
+@pytest.mark.full
+@pytest.mark.parametrize(
+    ("seed", "hidden"),
+    [(600002, "exponential_friction"), (700018, "tube"), (700068, "exponential_friction")],
+)
+def test_a_bench_whose_unseen_records_do_not_feel_it(seed: int, hidden: str) -> None:
+    found = run_task(Task("bench", seed, "catalogue", 3.0))
+    assert found.hidden == [hidden]
+    assert found.right, found
+
+
 @pytest.mark.parametrize(
     ("sort", "seed", "hidden"),
     [
