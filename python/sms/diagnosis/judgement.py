@@ -178,7 +178,7 @@ def _best_of_runs(
 
 
 def _takes_less(trial: Trial, best: Trial, before: Array, left: Mapping[str, Array]) -> bool:
-    """Whether a rival takes less than nine tenths: of the unseen records' error, or of all where they do not feel it."""
+    """Whether a rival takes less than nine tenths, of all records where the unseen ones do not feel it."""
     if not (trial.crosswise or best.crosswise):
         return trial.gain < 0.9 * best.gain
     takes, most = (float((before - left[t.effect.key]).sum()) for t in (trial, best))

@@ -64,7 +64,7 @@ class Trial:
     support: float = 0.0
     """Share of resamples of the windows or strokes in which it is the best of its round."""
     crosswise: bool = False
-    """Whether the records kept aside do not feel it: then the fitted ones are held against each other (crosswise.py)."""
+    """Whether the records kept aside do not feel it: the fitted ones are held against each other (crosswise.py)."""
 
 
 def try_effects(
