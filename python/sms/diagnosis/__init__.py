@@ -7,6 +7,7 @@ kind, kinds     what the method asks of a kind of rig that is simulated, and the
 repeatability   what repeats, what drifts, and the noise floor
 hypothesis  which parameters may move, and their fit; visible: which effects can be seen at all
 search, judgement   one round: screening and fits, then held-out judgement and classes
+afar        effects that are far from where the model stands
 crosswise   judgement of an effect that the records kept aside do not feel
 rounds      rounds until nothing more is found, and the verdict
 evidence    sizes with honest errors, gains, what is left

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sms import _core
+from sms.diagnosis import afar
 from sms.diagnosis.catalogue import Effect
 from sms.diagnosis.gauss_newton import changed
 from sms.diagnosis.hypothesis import (
@@ -113,6 +114,7 @@ def _try_on_runs(
     current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
 ) -> list[Trial]:
     """All effects are screened; those that speak loudest are fitted in full."""
+    assert isinstance(data.identify, Runs)
     found = screen_effects(current, data, effects, rng)
     room = np.array([_room(e, current, data.rig) for e in effects])
     promise = found.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
@@ -144,11 +146,19 @@ def _try_on_runs(
         )
         for k in promising
     }
+    p_values = found.p_value.copy()
+    if afar.much_is_left(current, fits.values(), data.identify):
+        for k in afar.may_be_elsewhere(effects, promise):
+            if k not in fits:
+                guess = _first_guess(effects[k], current, found, k)
+                fits[k] = afar.fit_from_afar(effects[k], current, data, guess)
+                chance = afar.chance(current, fits[k], data.identify, len(effects))
+                p_values[k] = min(p_values[k], chance)
     taken = {k: here - float(np.sum(f.fit.residual**2)) for k, f in fits.items()}
     cosine = found.cosine
     trials = []
     for k, effect in enumerate(effects):
-        p_value = float(found.p_value[k])
+        p_value = float(p_values[k])
         trial = Trial(effect, current, p_value, before, identified=current.fit.residual**2)
         if k in fits and taken[k] >= WORTH_A_LOOK * max(taken.values()):
             fitted = fits[k]

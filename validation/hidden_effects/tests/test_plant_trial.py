@@ -117,6 +117,14 @@ def test_a_bench_whose_unseen_records_do_not_feel_it(seed: int, hidden: str) -> 
     assert found.right, found
 
 
+@pytest.mark.full
+@pytest.mark.parametrize(("seed", "hidden"), [(700090, "presliding"), (300024, "heat_transfer")])
+def test_a_bench_whose_effect_is_far_from_where_the_model_stands(seed: int, hidden: str) -> None:
+    found = run_task(Task("bench", seed, "catalogue", 3.0))
+    assert found.hidden == [hidden]
+    assert found.right, found
+
+
 @pytest.mark.parametrize(
     ("sort", "seed", "hidden"),
     [
