@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
@@ -11,10 +10,9 @@ import numpy as np
 from sms import _core, simulation
 from sms.diagnosis.kind import Equations, Experiment, Kind, Run
 from sms.diagnosis.result import Array
+from sms.diagnosis.windows import NOTHING, in_windows
 from sms.io.rig import Rig
 
-WINDOW = 1.0
-"""s: length of a window."""
 LONGEST_STEP = 1e-3
 """s: of the integration. At 2.5 ms a piston that stops chatters over the kink of its friction; at 1.25 ms hardly."""
 HIDDEN = {
@@ -30,26 +28,25 @@ def make_problem(
 ) -> _core.BenchProblem:
     """The records as the core's problem."""
     return _core.BenchProblem(
-        records=[_record(run, channels) for run in runs],
+        records=[record_of(run, channels, command=run.signals["valve_command"]) for run in runs],
         noise={s: noise[s] for s in OUTPUTS},
-        friction=rig.model.friction,
-        valve=rig.model.valve,
-        chambers=rig.model.chambers,
-        window=WINDOW,
-        longest_step=LONGEST_STEP,
-        threads=int(os.environ.get("SMS_THREADS", "2")),
+        **in_windows(rig, LONGEST_STEP),
     )
 
 
-def _record(run: Run, channels: Sequence[str]) -> _core.BenchRecord:
+def record_of(
+    run: Run, channels: Sequence[str], *, command: Array, setpoint: Array = NOTHING
+) -> _core.BenchRecord:
+    """One run as the core takes it; command and setpoint (n,), or empty."""
     s = run.signals
     return _core.BenchRecord(
         step=run.step,
-        command=s["valve_command"],
+        command=command,
+        setpoint=setpoint,
         extension=s["extension"],
         pressure_lower=s["chamber_pressure_lower"],
         pressure_upper=s["chamber_pressure_upper"],
-        supply_pressure=s["supply_pressure"] if "supply_pressure" in channels else np.empty(0),
+        supply_pressure=s["supply_pressure"] if "supply_pressure" in channels else NOTHING,
         conditions=run.conditions,
     )
 

@@ -7,15 +7,13 @@ makes of the recorded extension, held against it. That row knows the controller 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from sms import _core
 from sms.diagnosis.kind import Run
-from sms.diagnosis.kind_bench import BENCH, LONGEST_STEP, OUTPUTS, WINDOW
+from sms.diagnosis.kind_bench import BENCH, LONGEST_STEP, OUTPUTS, record_of
+from sms.diagnosis.windows import NOTHING, controller_of, in_windows
 from sms.io.rig import Rig
 
 COMMAND = "valve_command"
@@ -32,30 +30,14 @@ def make_problem(
         records=[_record(run, channels) for run in runs],
         noise={s: noise[s] for s in (*OUTPUTS, COMMAND)},
         said=rig.start(),
-        law=rig.control.law,
-        compensated=rig.control.compensated,
-        electronics=rig.control.electronics,
-        friction=rig.model.friction,
-        valve=rig.model.valve,
-        chambers=rig.model.chambers,
-        window=WINDOW,
-        longest_step=LONGEST_STEP,
-        threads=int(os.environ.get("SMS_THREADS", "2")),
+        **controller_of(rig),
+        **in_windows(rig, LONGEST_STEP),
     )
 
 
 def _record(run: Run, channels: Sequence[str]) -> _core.BenchRecord:
-    s, nothing = run.signals, np.empty(0)
-    return _core.BenchRecord(
-        step=run.step,
-        command=s[COMMAND] if COMMAND in channels else nothing,
-        setpoint=s["setpoint"],
-        extension=s["extension"],
-        pressure_lower=s["chamber_pressure_lower"],
-        pressure_upper=s["chamber_pressure_upper"],
-        supply_pressure=s["supply_pressure"] if "supply_pressure" in channels else nothing,
-        conditions=run.conditions,
-    )
+    command = run.signals[COMMAND] if COMMAND in channels else NOTHING
+    return record_of(run, channels, command=command, setpoint=run.signals["setpoint"])
 
 
 BENCH_LOOP = replace(

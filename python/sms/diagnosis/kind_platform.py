@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import cast
@@ -12,11 +11,10 @@ import numpy as np
 from sms import _core, simulation
 from sms.diagnosis.kind import Equations, Experiment, Kind, Problem, Run, WindowProblem
 from sms.diagnosis.result import Array
+from sms.diagnosis.windows import NOTHING, in_windows
 from sms.io.rig import Rig
 from sms.io.signals import LEGS, of_legs
 
-WINDOW = 1.0
-"""s: length of a window."""
 LONGEST_STEP = 2.5e-3
 """s: of the integration. Under the platform a piston carries a hundred kilograms, and stops gently."""
 HIDDEN = {
@@ -39,12 +37,7 @@ def make_problem(
     problem = _core.PlatformProblem(
         records=[_record(run, channels) for run in runs],
         noise={s: noise[s] for s in OUTPUTS},
-        friction=rig.model.friction,
-        valve=rig.model.valve,
-        chambers=rig.model.chambers,
-        window=WINDOW,
-        longest_step=LONGEST_STEP,
-        threads=int(os.environ.get("SMS_THREADS", "2")),
+        **in_windows(rig, LONGEST_STEP),
     )
     # Its parameters are LegParams, which are Params with more names.
     return cast(WindowProblem, problem)
@@ -61,9 +54,9 @@ def _record(run: Run, channels: Sequence[str]) -> _core.PlatformRecord:
         extension=legs("extension"),
         pressure_lower=legs("chamber_pressure_lower"),
         pressure_upper=legs("chamber_pressure_upper"),
-        supply_pressure=run.signals["supply_pressure"] if has_supply else np.empty(0),
-        roll=run.signals["roll"] if both else np.empty(0),
-        pitch=run.signals["pitch"] if both else np.empty(0),
+        supply_pressure=run.signals["supply_pressure"] if has_supply else NOTHING,
+        roll=run.signals["roll"] if both else NOTHING,
+        pitch=run.signals["pitch"] if both else NOTHING,
         conditions=run.conditions,
     )
 

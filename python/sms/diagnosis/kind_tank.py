@@ -11,10 +11,9 @@ import numpy as np
 from sms import _core, simulation
 from sms.diagnosis.kind import Equations, Experiment, Kind, Run
 from sms.diagnosis.result import Array
+from sms.diagnosis.windows import WINDOW
 from sms.io.rig import Rig
 
-WINDOW = 1.0
-"""s: length of a window."""
 LONGEST_STEP = 1e-3
 """s: of the integration; the spool of 65 Hz needs it."""
 HIDDEN = {"flow of the tank": "kg/s", "supply pressure": "Pa"}
