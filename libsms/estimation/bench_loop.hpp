@@ -1,9 +1,10 @@
 // The rig "bench" in a closed loop as a plant of shooting.hpp: the controller is simulated with the machine
-// (bench_controller.hpp). The set-point is measured instead of the command; where the command is measured as well, it is
+// (actuator_controller.hpp). The set-point is measured instead of the command; where the command is measured as well, it is
 // held against what the controller makes of the measured extension.
 #pragma once
 
-#include "estimation/bench_controller.hpp"
+#include "estimation/actuator_controller.hpp"
+#include "estimation/bench_plant.hpp"
 
 namespace sms {
 namespace estimation {
@@ -27,18 +28,20 @@ class BenchLoopPlant : public BenchPlant {
   template <typename S>
   void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
                 int knots = 0) const {
-    const BenchRecord& record = of(window.record);
-    const ControlGrid grid = grid_of(record.step, value_of(params.control_period));
+    const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
     const S* const at_output = hidden == nullptr ? nullptr : hidden + BenchPlant::kHidden * knots;
     const auto controlled = [&](const BenchRates<S>& rates, const S& h) {
-      return SimulatedController<S>(rates, record, window, law_, grid, h, start[BenchPlant::kStart], at_output, knots,
-                                    command_noise_);
+      return SimulatedController<S>(rates.params(), laws(), control_record(window.record), window, law_, grid, h,
+                                    start[BenchPlant::kStart], at_output, knots, command_noise_);
     };
     simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
   }
 
  private:
-  ControlGrid grid_of(double step, double period) const;
+  ControlRecord control_record(int record) const {
+    const BenchRecord& r = of(record);
+    return {r.step, r.setpoint, r.extension, r.command};
+  }
 
   double command_noise_;
   ControlLaw law_;

@@ -4,12 +4,12 @@
 // seals, and by how much the air in both chambers is warmer than the supplied. The spool needs none of it: it follows the
 // command alone, and is run up over the 50 ms before the window.
 //
-// The command is the record's (RecordedCommand), or that of a controller that is simulated with the rest
+// The command is the record's (recorded_command.hpp), or that of a controller that is simulated with the rest
 // (bench_loop.hpp).
 #pragma once
 
-#include "estimation/actuator_sensors.hpp"
 #include "estimation/bench_rates.hpp"
+#include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
 
 namespace sms {
@@ -33,32 +33,6 @@ struct BenchNoise {
   double pressure_lower = 1e3;
   double pressure_upper = 1e3;
   double supply_pressure = 1e3;
-};
-
-// The valve driven by the record: straight from sample to sample, `command_delay` late.
-template <typename S>
-class RecordedCommand {
- public:
-  RecordedCommand(const BenchRates<S>& rates, const BenchRecord& record, const Window& window, int steps, const S& h)
-      : p_(rates.params()), command_(record.command), first_(window.first), steps_(steps), h_(h) {
-    late_ = p_.command_delay / S(record.step);
-  }
-  // The spool where the window begins.
-  void begin(ActuatorState<S>& actuator) const {
-    actuator.spool = detail::spool_at(p_, command_, first_, steps_, h_, late_);
-  }
-  // V, `at` counted in samples from the window's first.
-  S at(double at) const { return detail::command_at<S>(command_, S(first_ + at) - late_); }
-  // A step begins at this state, which its sensors see: a controller would have its say now.
-  void step_begins(int, int, const BenchState<S>&, const ActuatorSensors<S>&, BenchState<S>&) const {}
-  S* readings(int, S* out) const { return out; }
-
- private:
-  const Params<S>& p_;
-  const Eigen::VectorXd& command_;
-  int first_;
-  int steps_;
-  S h_, late_;
 };
 
 class BenchPlant {
@@ -97,8 +71,7 @@ class BenchPlant {
  protected:
   const BenchRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
   const ActuatorLaws& laws() const { return laws_; }
-  // Steps of integration from sample to sample, each within longest_step.
-  int steps_over(double time) const { return std::max(1, static_cast<int>(std::ceil(time / longest_step_ - 1e-9))); }
+  double longest_step() const { return longest_step_; }
 
   // Which way the piston had gone last, by more than the noise.
   double moved_last(const Eigen::VectorXd& extension, int sample) const {
@@ -149,9 +122,9 @@ template <typename S>
 void BenchPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
                           int knots) const {
   const BenchRecord& record = of(window.record);
-  const int steps = steps_over(record.step);
+  const int steps = detail::steps_over(record.step, longest_step_);
   const auto recorded = [&](const BenchRates<S>& rates, const S& h) {
-    return RecordedCommand<S>(rates, record, window, steps, h);
+    return RecordedCommand<S>(rates.params(), record.command, record.step, window.first, steps, h);
   };
   simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
 }

@@ -15,6 +15,11 @@ namespace sms {
 namespace estimation {
 namespace detail {
 
+// Steps of an integration over a time, each within longest_step.
+inline int steps_over(double time, double longest_step) {
+  return std::max(1, static_cast<int>(std::ceil(time / longest_step - 1e-9)));
+}
+
 // How many whole samples a clock is late, and what is left of it, s.
 template <typename S>
 int whole_samples(double step, const S& late, S* rest) {

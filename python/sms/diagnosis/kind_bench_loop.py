@@ -1,7 +1,7 @@
 """The kind "bench" with its controller simulated: set-point in, extension, chamber pressures and command out.
 
 The controller is the project's own (libsms/include/sms/position_loop.hpp), inside the core's simulation of a window
-(libsms/estimation/bench_controller.hpp). Where the command was recorded it is an output as well: what the controller
+(libsms/estimation/actuator_controller.hpp). Where the command was recorded it is an output as well: what the controller
 makes of the recorded extension, held against it. That row knows the controller only, the others the machine and it.
 """
 

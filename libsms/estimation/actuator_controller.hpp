@@ -1,4 +1,5 @@
-// The position controller of a bench, simulated with the machine: the same one that the firmware runs (position_loop.hpp).
+// The position controller of one actuator, simulated with the machine: the same one that the firmware runs
+// (position_loop.hpp).
 //
 //   set-point, recorded ----------------------------v
 //   extension -> sensor, with its errors -> filter -> controller, each T_s -> held -> command_delay -> valve
@@ -16,7 +17,8 @@
 // given the readings, the recorded command depends on the controller alone.
 #pragma once
 
-#include "estimation/bench_plant.hpp"
+#include "estimation/recorded_command.hpp"
+#include "estimation/shooting.hpp"
 #include "sms/position_loop.hpp"
 #include "sms/tube.hpp"
 
@@ -78,28 +80,48 @@ struct ControlGrid {
   }
 };
 
+// longest_step: of the integration, s.
+ControlGrid control_grid(double record_step, double period, double longest_step);
+
+// What was recorded of one actuator's loop, evenly sampled. The signals have to last.
+struct ControlRecord {
+  double step;                       // s
+  const Eigen::VectorXd& setpoint;   // m
+  const Eigen::VectorXd& extension;  // as read
+  const Eigen::VectorXd& command;    // V; empty: not measured
+};
+
+// What the integral of a controller holds before each of its samples, fed with the record from zero on, V.
+Eigen::VectorXd integral_along(const ControlRecord& record, const ControlLaw& law, const Params<double>& p);
+
+// std::invalid_argument for a set-point of another length than the extension, with a value that is not finite, or a
+// period of the controller that does not fit the record's step. name: of the record, in messages.
+void check_loop(const std::string& name, const ControlRecord& record, double period);
+
 // Drives the valve of a window; RecordedCommand has the same members.
 template <typename S>
 class SimulatedController {
  public:
   // integral: of the controller where it begins to be fed with the record, V. hidden: a voltage at the controller's
   // output, `knots` values in the window, or nullptr. noise: of the recorded command, V.
-  SimulatedController(const BenchRates<S>& rates, const BenchRecord& record, const Window& window,
+  // The parameters have to last.
+  SimulatedController(const Params<S>& p, const ActuatorLaws& laws, const ControlRecord& record, const Window& window,
                       const ControlLaw& law, const ControlGrid& grid, const S& h, const S& integral, const S* hidden,
                       int knots, double noise)
-      : rates_(rates),
+      : p_(p),
+        laws_(laws),
         record_(record),
         window_(window),
         grid_(grid),
         h_(h),
-        late_((rates.params().command_delay + tube_delay(rates.params())) / h),
+        late_((p.command_delay + tube_delay(p)) / h),
         hidden_(hidden),
         knots_(knots),
         noise_(noise),
         begins_(grid.begins(window.first, record.step)),
-        simulated_(rates.params(), law),
-        fed_(rates.params(), law),
-        by_record_(rates.params().command_offset) {
+        simulated_(p, law),
+        fed_(p, law),
+        by_record_(p.command_offset) {
     simulated_.begin(setpoint(begins_), reading(begins_), integral);
     for (int j = begins_; j * grid_.every < window.first * grid_.steps; ++j) {
       sent_.push_back(by_record_ = simulated_.sample(setpoint(j), reading(j)));
@@ -111,16 +133,15 @@ class SimulatedController {
   void begin(ActuatorState<S>& a) {
     const int first = window_.first * grid_.steps;
     const int run_up = std::min(first, static_cast<int>(0.05 / value_of(h_)) + 1);
-    const Params<S>& p = rates_.params();
     ActuatorState<S> k1{}, k2{}, moved{};
-    mean_ = run_up > 0 ? arriving(first - run_up) : p.command_offset;
+    mean_ = run_up > 0 ? arriving(first - run_up) : p_.command_offset;
     a.spool = a.drive = {mean_, S(0)};
     for (int q = first - run_up; q < first; ++q) {
       mean_ = arriving(q);
-      drive_rates(p, rates_.laws(), a, mean_, k1);
+      drive_rates(p_, laws_, a, mean_, k1);
       moved.spool = stepped(a.spool, k1.spool, h_);
       moved.drive = stepped(a.drive, k1.drive, h_);
-      drive_rates(p, rates_.laws(), moved, mean_, k2);
+      drive_rates(p_, laws_, moved, mean_, k2);
       a.spool = stepped(stepped(a.spool, k1.spool, S(0.5) * h_), k2.spool, S(0.5) * h_);
       a.drive = stepped(stepped(a.drive, k1.drive, S(0.5) * h_), k2.drive, S(0.5) * h_);
     }
@@ -137,11 +158,11 @@ class SimulatedController {
     }
     if (q % grid_.every == 0) {
       const int j = q / grid_.every;
-      sent_.push_back(simulated_.sample(setpoint(j), sensors.extension_reading(rates_.params(), y, S(0))));
+      sent_.push_back(simulated_.sample(setpoint(j), sensors.extension_reading(p_, y, S(0))));
       by_record_ = fed_.sample(setpoint(j), reading(j));
     }
     mean_ = arriving(q) + pushed_;
-    drive_rates(rates_.params(), rates_.laws(), y.actuator, mean_, rate.actuator);
+    drive_rates(p_, laws_, y.actuator, mean_, rate.actuator);
   }
 
   // What the controller makes of the recorded readings against the recorded command, over its noise.
@@ -160,9 +181,7 @@ class SimulatedController {
   S reading(int j) const { return recorded(record_.extension, j); }
 
   // Of sample j; before the record, and before the controller is fed: the command at rest.
-  S sent(int j) const {
-    return j < begins_ ? rates_.params().command_offset : sent_[static_cast<std::size_t>(j - begins_)];
-  }
+  S sent(int j) const { return j < begins_ ? p_.command_offset : sent_[static_cast<std::size_t>(j - begins_)]; }
 
   // Mean over the step q of the integration, counted from the record's first, of what arrives at the valve: on the way
   // are late_ steps. A jump at the very beginning of a step belongs to the step before, so that the slope against a
@@ -179,8 +198,9 @@ class SimulatedController {
     return {lag.value + time * rate.value, lag.rate + time * rate.rate};
   }
 
-  const BenchRates<S>& rates_;
-  const BenchRecord& record_;
+  const Params<S>& p_;
+  ActuatorLaws laws_;
+  ControlRecord record_;
   const Window& window_;
   ControlGrid grid_;
   S h_, late_;
