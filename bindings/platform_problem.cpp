@@ -1,7 +1,7 @@
 // The rig "platform" held against records, and the parameters of a machine with three legs.
 #include <memory>
 
-#include "estimation/platform_plant.hpp"
+#include "estimation/platform_loop.hpp"
 #include "shooting_problem.hpp"
 
 namespace sms_python {
@@ -10,6 +10,10 @@ namespace {
 namespace est = sms::estimation;
 using LegParams = sms::LegParams<double>;
 using PlatformProblem = est::ShootingProblem<est::PlatformPlant>;
+using PlatformLoopProblem = est::ShootingProblem<est::PlatformLoopPlant>;
+using Noise = std::map<std::string, double>;
+
+constexpr double kRunUp = 0.1;  // s
 
 // "chamber_leakage_lower" is that of all legs, "chamber_leakage_lower:2" what leg 2 has more.
 int leg_param_index(const std::string& name) {
@@ -49,12 +53,13 @@ void bind_leg_params(py::module_& m) {
       .def_property_readonly("legs", &legs_of, "What each leg has, as simulate_platform takes it.");
 }
 
+// (n, 3), or (0, 3) for what was not recorded.
 est::LegSignals columns(const Eigen::MatrixX3d& signals) { return {signals.col(0), signals.col(1), signals.col(2)}; }
 
 est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, const Eigen::MatrixX3d& extension,
                                 const Eigen::MatrixX3d& pressure_lower, const Eigen::MatrixX3d& pressure_upper,
                                 Eigen::VectorXd supply_pressure, Eigen::VectorXd roll, Eigen::VectorXd pitch,
-                                const std::map<std::string, double>& conditions) {
+                                const std::map<std::string, double>& conditions, const Eigen::MatrixX3d& setpoint) {
   return {step,
           columns(command),
           columns(extension),
@@ -63,26 +68,57 @@ est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, co
           std::move(supply_pressure),
           std::move(roll),
           std::move(pitch),
-          conditions_of(conditions)};
+          conditions_of(conditions),
+          columns(setpoint)};
 }
 
-std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> records,
-                                              const std::map<std::string, double>& noise, const std::string& friction,
-                                              const std::string& valve, const std::string& chambers, int masses,
-                                              double window, double longest_step, int threads) {
-  est::PlatformNoise sizes;
-  for (int i = 0; i < 3; ++i) {
-    const std::string leg = "_" + std::to_string(i + 1);
-    sizes.extension(i) = noise.at("extension" + leg);
-    sizes.pressure_lower(i) = noise.at("chamber_pressure_lower" + leg);
-    sizes.pressure_upper(i) = noise.at("chamber_pressure_upper" + leg);
-  }
-  sizes.supply_pressure = noise.at("supply_pressure");
-  sizes.attitude << noise.at("roll"), noise.at("pitch");
+Eigen::Vector3d of_legs(const Noise& noise, const std::string& signal) {
+  return {noise.at(signal + "_1"), noise.at(signal + "_2"), noise.at(signal + "_3")};
+}
+
+est::PlatformNoise platform_noise(const Noise& noise) {
+  return {of_legs(noise, "extension"),
+          of_legs(noise, "chamber_pressure_lower"),
+          of_legs(noise, "chamber_pressure_upper"),
+          noise.at("supply_pressure"),
+          {noise.at("roll"), noise.at("pitch")}};
+}
+
+std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> records, const Noise& noise,
+                                              const std::string& friction, const std::string& valve,
+                                              const std::string& chambers, int masses, double window,
+                                              double longest_step, int threads) {
   return std::make_unique<PlatformProblem>(
-      est::PlatformPlant(std::move(records), sizes, laws_of(friction, valve, chambers),
+      est::PlatformPlant(std::move(records), platform_noise(noise), laws_of(friction, valve, chambers),
                          static_cast<sms::MassModel>(masses), longest_step),
-      est::WindowOptions{window, 0.1, threads});
+      est::WindowOptions{window, kRunUp, threads});
+}
+
+std::unique_ptr<PlatformLoopProblem> make_loop_problem(std::vector<est::PlatformRecord> records, const Noise& noise,
+                                                       const LegParams& said, const std::string& law, bool compensated,
+                                                       bool electronics, const std::string& friction,
+                                                       const std::string& valve, const std::string& chambers,
+                                                       int masses, double window, double longest_step, int threads) {
+  sms::ActuatorLaws laws = laws_of(friction, valve, chambers);
+  laws.drive_filter = electronics;
+  return std::make_unique<PlatformLoopProblem>(
+      est::PlatformLoopPlant(std::move(records), platform_noise(noise), of_legs(noise, "valve_command"), laws,
+                             control_law(law, compensated, electronics), said, static_cast<sms::MassModel>(masses),
+                             longest_step),
+      est::WindowOptions{window, kRunUp, threads});
+}
+
+// Residual and Jacobian, where a parameter may be that of one leg.
+template <typename Problem, typename Class>
+void bind_evaluate(Class& problem) {
+  problem.def_property_readonly("rows", &Problem::rows)
+      .def(
+          "evaluate",
+          [](const Problem& p, const LegParams& params, const std::vector<std::string>& free) {
+            return evaluate_with_legs(p, params, free);
+          },
+          py::arg("params"), py::arg("free") = std::vector<std::string>(),
+          "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.");
 }
 
 }  // namespace
@@ -100,24 +136,28 @@ void bind_platform_problem(py::module_& m) {
       .def(py::init(&make_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
            py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(),
-           py::arg("conditions") = std::map<std::string, double>());
-  bind_shooting_problem<est::PlatformPlant>(m, "PlatformProblem")
-      .def(
-          py::init(&make_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
-          py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
-          py::arg("chambers") = "polytropic", py::arg("masses") = 0, py::arg("window") = 1.0,
-          py::arg("longest_step") = 2.5e-3, py::arg("threads") = 1,
-          "noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, "
-          "chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, "
-          "N, and flows into the three lower and the three upper chambers, kg/s.")
-      .def_property_readonly("rows", &PlatformProblem::rows)
-      .def(
-          "evaluate",
-          [](const PlatformProblem& problem, const LegParams& params, const std::vector<std::string>& free) {
-            return evaluate_with_legs(problem, params, free);
-          },
-          py::arg("params"), py::arg("free") = std::vector<std::string>(),
-          "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.");
+           py::arg("conditions") = std::map<std::string, double>(), py::arg("setpoint") = Eigen::MatrixX3d(),
+           "setpoint: of a loop that is simulated, where command may be empty: not measured.");
+  auto problem = bind_shooting_problem<est::PlatformPlant>(m, "PlatformProblem");
+  bind_evaluate<PlatformProblem>(problem);
+  problem.def(
+      py::init(&make_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+      py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+      py::arg("chambers") = "polytropic", py::arg("masses") = 0, py::arg("window") = 1.0,
+      py::arg("longest_step") = 2.5e-3, py::arg("threads") = 1,
+      "noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, "
+      "chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, "
+      "N, and flows into the three lower and the three upper chambers, kg/s.");
+  auto loop = bind_shooting_problem<est::PlatformLoopPlant>(m, "PlatformLoopProblem");
+  bind_evaluate<PlatformLoopProblem>(loop);
+  loop.def(py::init(&make_loop_problem), py::kw_only(), py::arg("records"), py::arg("noise"), py::arg("said"),
+           py::arg("law") = "pid", py::arg("compensated") = true, py::arg("electronics") = false,
+           py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+           py::arg("chambers") = "polytropic", py::arg("masses") = 0, py::arg("window") = 1.0,
+           py::arg("longest_step") = 2.5e-3, py::arg("threads") = 1,
+           "PlatformProblem with the controller of each leg simulated. noise: of valve_command_1 .. 3 too, which are "
+           "the last outputs where they are recorded. said: the machine as declared. Three more hidden inputs: a "
+           "voltage at each controller's output, V.");
 }
 
 }  // namespace sms_python

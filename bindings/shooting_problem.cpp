@@ -51,16 +51,11 @@ std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::Bench
                                                           bool electronics, const std::string& friction,
                                                           const std::string& valve, const std::string& chambers,
                                                           double window, double longest_step, int threads) {
-  using sms::PositionControl;
-  const est::ControlLaw control{
-      choice<PositionControl>("law", law,
-                              {{"pid", PositionControl::pid}, {"state_feedback", PositionControl::state_feedback}}),
-      compensated, electronics};
   sms::ActuatorLaws laws = laws_of(friction, valve, chambers);
   laws.drive_filter = electronics;
   return std::make_unique<BenchLoopProblem>(
-      est::BenchLoopPlant(std::move(records), bench_noise(noise), noise.at("valve_command"), laws, control, said,
-                          longest_step),
+      est::BenchLoopPlant(std::move(records), bench_noise(noise), noise.at("valve_command"), laws,
+                          control_law(law, compensated, electronics), said, longest_step),
       est::WindowOptions{window, kRunUp, threads});
 }
 

@@ -10,6 +10,7 @@
 
 #include "bind.hpp"
 #include "choice.hpp"
+#include "estimation/actuator_controller.hpp"
 #include "estimation/leg_params.hpp"
 #include "estimation/shooting.hpp"
 #include "laws.hpp"
@@ -37,6 +38,13 @@ inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string&
           choice<ChamberLaw>("chambers", chambers,
                              {{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}),
           false};
+}
+
+inline sms::estimation::ControlLaw control_law(const std::string& law, bool compensated, bool electronics) {
+  using sms::PositionControl;
+  return {choice<PositionControl>("law", law,
+                                  {{"pid", PositionControl::pid}, {"state_feedback", PositionControl::state_feedback}}),
+          compensated, electronics};
 }
 
 // Residual and Jacobian against parameters by name; `index` gives the ParamIndex of one.

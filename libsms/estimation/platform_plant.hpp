@@ -7,6 +7,8 @@
 //
 // A parameter may belong to all three legs or to one (leg_params.hpp). The mechanism has no legs: it is made of the
 // common parameters.
+//
+// The commands are the record's, or those of controllers that are simulated with the rest (platform_loop.hpp).
 #pragma once
 
 #include <array>
@@ -14,9 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/platform_rates.hpp"
-#include "estimation/platform_sensors.hpp"
-#include "estimation/recorded.hpp"
+#include "estimation/leg_drives.hpp"
+#include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
 
 namespace sms {
@@ -36,6 +37,7 @@ struct PlatformRecord {
   Eigen::VectorXd roll;             // rad; roll and pitch empty: not measured
   Eigen::VectorXd pitch;
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
+  LegSignals setpoint = {};                        // m; of a loop that is simulated
 };
 
 // Standard deviation of one sample.
@@ -64,7 +66,7 @@ class PlatformPlant {
     return scale[k / 3];
   }
   int records() const { return static_cast<int>(records_.size()); }
-  int samples(int record) const { return static_cast<int>(of(record).command[0].size()); }
+  int samples(int record) const { return static_cast<int>(of(record).extension[0].size()); }
   double step(int record) const { return of(record).step; }
   int channels(int record) const {
     return 9 + (of(record).supply_pressure.size() > 0 ? 1 : 0) + (of(record).roll.size() > 0 ? 2 : 0);
@@ -78,9 +80,17 @@ class PlatformPlant {
   void simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
                 const S* hidden = nullptr, int knots = 0) const;
 
- private:
+ protected:
   const PlatformRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
+  const ActuatorLaws& laws() const { return laws_; }
+  double longest_step() const { return longest_step_; }
 
+  // As simulate(), in `steps` steps a sample; drives_of(LegMachines, h) makes what drives the valves (LegDrives).
+  template <typename S, typename DrivesOf>
+  void simulate_driven(const LegParams<S>& params, const Window& window, int steps, const DrivesOf& drives_of,
+                       const S* start, S* residual, const S* hidden, int knots) const;
+
+ private:
   // What the position sensors would have read in the window were they good, by what the parameters say of them.
   MeasuredMotion motion(const Params<double> (&leg)[3], const Window& window) const;
 
@@ -147,6 +157,22 @@ template <typename S>
 void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
                              const S* hidden, int knots) const {
   const PlatformRecord& record = of(window.record);
+  const int steps = detail::steps_over(record.step, longest_step_);
+  const auto recorded = [&](const LegMachines<S>& machines, const S& h) {
+    const auto of_leg = [&](int i) {
+      return RecordedCommand<S>(machines.leg[i], record.command[static_cast<std::size_t>(i)], record.step, window.first,
+                                steps, h);
+    };
+    return LegDrives<S, RecordedCommand<S>>{{of_leg(0), of_leg(1), of_leg(2)}};
+  };
+  simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
+}
+
+template <typename S, typename DrivesOf>
+void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& window, int steps,
+                                    const DrivesOf& drives_of, const S* start, S* residual, const S* hidden,
+                                    int knots) const {
+  const PlatformRecord& record = of(window.record);
   const LegMachines<S> machines = machines_of(params, record.conditions);
   const Params<double> plain[3] = {plain_params(machines.leg[0]), plain_params(machines.leg[1]),
                                    plain_params(machines.leg[2])};
@@ -154,24 +180,21 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
   const auto known = paths_->of(first_of_[static_cast<std::size_t>(window.record)] + window.first,
                                 plain_params(machines.common), masses_, measured);
   const MeasuredPath<S>& path = path_with_slopes(*known, machines.common, masses_, measured);
-  const int steps = std::max(1, static_cast<int>(std::ceil(record.step / longest_step_ - 1e-9)));
   const S h(record.step / steps);
   const S g = S(detail::kStiffShare) * h;
 
   Pistons<S> state;
-  S late[3];
   for (int i = 0; i < 3; ++i) {
     const Params<S>& p = machines.leg[i];
-    late[i] = p.command_delay / S(record.step);
     BenchState<S>& leg = state.leg[i];
     leg = {start[i], start[3 + i], actuator_at_rest<S>(p, start[6 + i], start[9 + i])};
     if (p.supply_line_resistance > S(0)) {
       leg.actuator.supply_pressure = start[12 + i];
     }
     leg.actuator.deflection = start[15 + i];
-    leg.actuator.spool =
-        detail::spool_at<S>(p, record.command[static_cast<std::size_t>(i)], window.first, steps, h, late[i]);
   }
+  auto drives = drives_of(machines, h);
+  drives.begin(state);
 
   PistonTerms<S> t;
   t.along.setZero();
@@ -189,19 +212,14 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
     return late_films;
   };
   const auto rates_at = [&](int sample, double part, const Pistons<S>& y, const Vec3<S>& films, Pistons<S>& rate) {
-    Vec3<S> command;
-    for (int i = 0; i < 3; ++i) {
-      command(i) =
-          detail::command_at<S>(record.command[static_cast<std::size_t>(i)], S(window.first + sample + part) - late[i]);
-    }
     S push[kHidden];
     if (hidden != nullptr) {
       for (int input = 0; input < kHidden; ++input) {
         push[input] = detail::hidden_at(hidden + input * knots, knots, window.samples, sample + part);
       }
     }
-    piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y, command, films,
-                    hidden != nullptr ? push : nullptr, t, rate);
+    piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y,
+                    drives.at(sample + part), films, hidden != nullptr ? push : nullptr, t, rate);
   };
   Vec3<double> went = Vec3<double>::Zero();
   for (int i = 0; i < 3; ++i) {
@@ -216,7 +234,9 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
     rates_at(k, 0.0, state, film, k1);
     const PathPoint<S>& place = path.points[static_cast<std::size_t>(k)];
     sensors.follow(machines, place, state, k1, t);
+    drives.step_begins(k, 0, state, sensors, k1);
     residual = readings<S>(machines, record, window.first + k, sensors, place, state, k1, residual);
+    residual = drives.readings(window.first + k, residual);
     if (k == window.samples - 1) {
       return;
     }
@@ -225,6 +245,7 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
       if (step > 0) {
         rates_at(k, begin, state, film, k1);
         sensors.follow(machines, place_between<S>(path.points, k, begin), state, k1, t);
+        drives.step_begins(k, step, state, sensors, k1);
       }
       detail::ActuatorStiffness<S> stiff[3];
       for (int i = 0; i < 3; ++i) {

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -2379,8 +2379,10 @@ class PlatformRecord:
     """
     One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.
     """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., roll: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., pitch: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
-        ...
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., roll: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., pitch: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"] = ...) -> None:
+        """
+        setpoint: of a loop that is simulated, where command may be empty: not measured.
+        """
 class PlatformProblem:
     """
     Prediction errors over windows, in units of the noise: for each sample of a window, each output.
@@ -2388,6 +2390,36 @@ class PlatformProblem:
     def __init__(self, *, records: collections.abc.Sequence[PlatformRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', masses: typing.SupportsInt | typing.SupportsIndex = 0, window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.0025, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         """
         noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, N, and flows into the three lower and the three upper chambers, kg/s.
+        """
+    def errors(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,): predicted less measured over the noise, at the best initial states.
+        """
+    def evaluate(self, params: LegParams, free: collections.abc.Sequence[str] = []) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
+        """
+        (residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.
+        """
+    def hidden(self, params: LegParams, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
+        """
+    def settle(self, params: LegParams) -> None:
+        """
+        Let later searches for initial states begin at the best ones of these parameters.
+        """
+    @property
+    def rows(self) -> int:
+        ...
+    @property
+    def windows(self) -> list[Window]:
+        ...
+class PlatformLoopProblem:
+    """
+    Prediction errors over windows, in units of the noise: for each sample of a window, each output.
+    """
+    def __init__(self, *, records: collections.abc.Sequence[PlatformRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], said: LegParams, law: str = 'pid', compensated: bool = True, electronics: bool = False, friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', masses: typing.SupportsInt | typing.SupportsIndex = 0, window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.0025, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+        """
+        PlatformProblem with the controller of each leg simulated. noise: of valve_command_1 .. 3 too, which are the last outputs where they are recorded. said: the machine as declared. Three more hidden inputs: a voltage at each controller's output, V.
         """
     def errors(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """

@@ -120,8 +120,19 @@ def pose(kind: int, time: Array) -> Array:
     return np.column_stack(waves[kind]) + np.array([0.0, 0.0, 0.5])
 
 
-def write_platform(folder: Path, seed: int, truth: Mapping[str, float], length: float) -> Path:
-    """A record to identify with and one to validate with; truth: "name" of all legs, "name:2" of leg 2."""
+def write_platform(
+    folder: Path,
+    seed: int,
+    truth: Mapping[str, float],
+    length: float,
+    *,
+    in_loop: bool = False,
+    command: bool = True,
+) -> Path:
+    """A record to identify with and one to validate with; truth: "name" of all legs, "name:2" of leg 2.
+
+    in_loop: the rig file asks for simulated controllers; command: whether their outputs are recorded.
+    """
     random = np.random.default_rng(seed)
     machine = _core.LegParams(Params(proportional_gain=8.0))
     for name, value in truth.items():
@@ -131,16 +142,20 @@ def write_platform(folder: Path, seed: int, truth: Mapping[str, float], length: 
         source = (
             f'{{ noise = "{PLATFORM_NOISE[signal][1]}" }}' if signal in PLATFORM_NOISE else "{}"
         )
-        text += "".join(f"{signal}_{leg} = {source}\n" for leg in (1, 2, 3))
+        if command or signal != "valve_command":
+            text += "".join(f"{signal}_{leg} = {source}\n" for leg in (1, 2, 3))
+    if in_loop:
+        text += "".join(f"setpoint_{leg} = {{}}\n" for leg in (1, 2, 3)) + IN_LOOP
     for number, role in enumerate(("identify", "validate")):
         time = 1e-3 * np.arange(0.0, length / 1e-3)
         wanted = pose(number, time)
-        run = simulate_platform(
-            extensions_of(*wanted.T), controller="pid", pose=wanted[0], params=machine.legs
-        )
+        setpoints = extensions_of(*wanted.T)
+        run = simulate_platform(setpoints, controller="pid", pose=wanted[0], params=machine.legs)
         signals = {"time": time[::EVERY]}
         for leg in (1, 2, 3):
             signals[f"valve_command_{leg}"] = run[f"valve_command_{leg}"][::EVERY]
+            if in_loop:
+                signals[f"setpoint_{leg}"] = setpoints[::EVERY, leg - 1]
             for name, (size, _) in PLATFORM_NOISE.items():
                 clean = run[f"{name}_{leg}"][::EVERY]
                 signals[f"{name}_{leg}"] = clean + random.normal(0.0, size, clean.size)

@@ -1,4 +1,4 @@
-"""A bench whose controller is simulated: what its rig file says, what the diagnosis makes of it."""
+"""A bench and a platform whose controller is simulated: what its rig file says, what the diagnosis makes of it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from plant_support import write_bench
+from plant_support import write_bench, write_platform
 from rich.console import Console
 from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
@@ -15,10 +15,15 @@ from sms.diagnosis.catalogue import effects_of
 from sms.diagnosis.console import print_diagnosis
 from sms.diagnosis.kind import Run
 from sms.diagnosis.kind_bench import MENU
+from sms.diagnosis.kind_platform import MENU as PLATFORM_MENU
+from sms.diagnosis.kind_platform_loop import COMMANDS, PLATFORM_LOOP, PLATFORM_LOOP_BLIND
 from sms.diagnosis.kinds import kind_of
+from sms.diagnosis.plant import make_data
 from sms.diagnosis.report import report_html
 from sms.diagnosis.words import of_command
 from sms.io import InputError, load_rig
+from sms.io.records import load_record
+from sms.io.signals import of_legs
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 
@@ -52,15 +57,31 @@ def test_what_a_simulated_controller_needs_is_asked_for(tmp_path: Path) -> None:
         diagnose(path)
 
 
-@pytest.mark.parametrize("kind", ["tank", "platform"])
-def test_other_kinds_take_the_command_from_the_record(tmp_path: Path, kind: str) -> None:
+def test_a_tank_takes_its_command_from_the_record(tmp_path: Path) -> None:
     rig = load_rig(write_bench(tmp_path, 1, {}, in_loop=True))
-    with pytest.raises(InputError, match=f"on a bench only, not on a {kind}.*record the command"):
-        kind_of(replace(rig, kind=kind))
+    with pytest.raises(
+        InputError, match=r"on a bench or a platform, not on a tank.*record the command"
+    ):
+        kind_of(replace(rig, kind="tank"))
 
 
-def test_the_effects_of_the_controller_are_those_of_its_law(tmp_path: Path) -> None:
-    path = write_bench(tmp_path, 1, {}, in_loop=True)
+def test_of_three_commands_all_are_recorded_or_none(tmp_path: Path) -> None:
+    path = write_platform(tmp_path, 1, {}, 1.0, in_loop=True)
+    assert kind_of(load_rig(path)) is PLATFORM_LOOP
+    changed(path, ("valve_command_2 = {}\n", ""))
+    with pytest.raises(InputError, match="only valve_command_1, valve_command_3; list all of them"):
+        kind_of(load_rig(path))
+    changed(path, ("valve_command_1 = {}\n", ""), ("valve_command_3 = {}\n", ""))
+    assert kind_of(load_rig(path)) is PLATFORM_LOOP_BLIND
+
+
+@pytest.mark.parametrize("kind", ["bench", "platform"])
+def test_the_effects_of_the_controller_are_those_of_its_law(tmp_path: Path, kind: str) -> None:
+    path = (
+        write_bench(tmp_path, 1, {}, in_loop=True)
+        if kind == "bench"
+        else write_platform(tmp_path, 1, {}, 1.0, in_loop=True)
+    )
 
     def mismatches() -> set[str | None]:
         return {e.signal for e in effects_of(load_rig(path)) if e.id == "controller_mismatch"}
@@ -92,6 +113,40 @@ def test_the_menu_runs_in_the_loop_of_the_rigs_own_controller(tmp_path: Path) ->
     assert far(closer) < 0.8 * far(run)
 
 
+def test_a_platforms_menu_runs_in_the_loop_of_its_own_controllers(tmp_path: Path) -> None:
+    rig = load_rig(write_platform(tmp_path, 1, {}, 1.0, in_loop=True))
+    run = PLATFORM_MENU[1].simulated(rig, rig.start(), ("roll",))
+    assert run is not None
+    assert set(run.signals) >= {*of_legs("setpoint", "valve_command"), "roll"}
+    assert run.step == pytest.approx(0.005)
+    # A slow triangle is followed, and never exactly.
+    off = run.signals["setpoint_2"] - run.signals["extension_2"]
+    assert 1e-4 < np.std(off) < 0.3 * np.std(run.signals["setpoint_2"])
+
+
+@pytest.mark.parametrize("command", [True, False])
+def test_a_platforms_records_ask_for_the_gain_they_were_made_with(
+    tmp_path: Path, command: bool
+) -> None:
+    gain, free = 9.6, ["proportional_gain"]
+    rig = load_rig(
+        write_platform(tmp_path, 4, dict.fromkeys(free, gain), 1.2, in_loop=True, command=command)
+    )
+    runs = make_data(rig, [load_record(rig, source) for source in rig.records]).identify
+    assert [c for c in runs.channels if c.startswith("valve")] == list(COMMANDS if command else ())
+    machine = rig.start()
+    assert machine["proportional_gain"] == 8.0
+    at_first, _ = runs.problem.evaluate(machine)
+    for _ in range(3):
+        residual, slope = runs.problem.evaluate(machine, free)
+        step = -float(slope[:, 0] @ residual / (slope[:, 0] @ slope[:, 0]))
+        machine["proportional_gain"] = machine["proportional_gain"] + step
+    error = 1.0 / np.linalg.norm(slope)
+    assert machine["proportional_gain"] == pytest.approx(gain, abs=5.0 * error + 0.01 * gain)
+    assert np.mean(residual**2) < 2.0
+    assert np.mean(at_first**2) > 20.0
+
+
 # ---- the whole method ----------------------------------------------------------------------------
 
 
@@ -116,6 +171,21 @@ def test_a_gain_that_is_not_as_said_is_named_with_its_value(tmp_path: Path) -> N
     for page in (printed(answer), report_html(answer)):
         assert "Closed loop, its controller (PID) simulated" in page
         assert "the recorded command is held against" in page
+
+
+@pytest.mark.full
+def test_a_gain_of_a_platform_that_is_not_as_said_is_named_with_its_value(tmp_path: Path) -> None:
+    gain = 9.6
+    answer = diagnose(write_platform(tmp_path, 3, {"proportional_gain": gain}, 2.2, in_loop=True))
+    assert answer.verdict == "cause"
+    (cause,) = answer.causes
+    assert (cause.effect, cause.signal) == ("controller_mismatch", "proportional_gain")
+    found = cause.parameters[0]
+    assert found.old_value == 8.0
+    assert found.value == pytest.approx(gain, abs=max(4.0 * found.standard_error, 0.01 * gain))
+    assert answer.hidden is not None
+    assert answer.hidden.equation.startswith("command")
+    assert "the controller of each leg (PID) simulated" in printed(answer)
 
 
 def test_the_way_taken_is_said_for_a_recorded_command_too(tmp_path: Path) -> None:

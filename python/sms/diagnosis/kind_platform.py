@@ -28,6 +28,8 @@ OUTPUTS = (
     "roll",
     "pitch",
 )
+NOT_OF_LEGS: Array = np.empty((0, 3))
+"""A signal that was recorded of no leg."""
 
 
 def make_problem(
@@ -35,7 +37,7 @@ def make_problem(
 ) -> WindowProblem:
     """The records as the core's problem."""
     problem = _core.PlatformProblem(
-        records=[_record(run, channels) for run in runs],
+        records=[record_of(run, channels, command=columns(run, "valve_command")) for run in runs],
         noise={s: noise[s] for s in OUTPUTS},
         **in_windows(rig, LONGEST_STEP),
     )
@@ -43,17 +45,23 @@ def make_problem(
     return cast(WindowProblem, problem)
 
 
-def _record(run: Run, channels: Sequence[str]) -> _core.PlatformRecord:
-    def legs(signal: str) -> Array:
-        return np.column_stack([run.signals[name] for name in of_legs(signal)])
+def columns(run: Run, signal: str) -> Array:
+    """A signal of each leg, (n, 3)."""
+    return np.column_stack([run.signals[name] for name in of_legs(signal)])
 
+
+def record_of(
+    run: Run, channels: Sequence[str], *, command: Array, setpoint: Array = NOT_OF_LEGS
+) -> _core.PlatformRecord:
+    """One run as the core takes it; command and setpoint (n, 3), or empty."""
     has_supply, both = "supply_pressure" in channels, "roll" in channels
     return _core.PlatformRecord(
         step=run.step,
-        command=legs("valve_command"),
-        extension=legs("extension"),
-        pressure_lower=legs("chamber_pressure_lower"),
-        pressure_upper=legs("chamber_pressure_upper"),
+        command=command,
+        setpoint=setpoint,
+        extension=columns(run, "extension"),
+        pressure_lower=columns(run, "chamber_pressure_lower"),
+        pressure_upper=columns(run, "chamber_pressure_upper"),
         supply_pressure=run.signals["supply_pressure"] if has_supply else NOTHING,
         roll=run.signals["roll"] if both else NOTHING,
         pitch=run.signals["pitch"] if both else NOTHING,
@@ -174,13 +182,18 @@ def simulated(
     waveform: Waveform,
     supply_change: float = 0.0,
 ) -> Run | None:
-    """The record of a run through poses; None if a piston would leave the stroke less the margin."""
+    """The record of a run through poses; None if a piston would leave the stroke less the margin.
+
+    In the loop of the rig's own controllers where those are simulated, else in slow ones.
+    """
     assert isinstance(params, _core.LegParams)
-    period, stroke = 1e-3, float(params["stroke"])
+    own = rig.control.controller == "simulated"
+    period, stroke = float(params["control_period"]) if own else 1e-3, float(params["stroke"])
     time = np.arange(0.0, LENGTH, period)
     machine = params.copy()
     machine["supply_pressure"] = machine["supply_pressure"] + supply_change
-    machine["proportional_gain"] = LOOP_GAIN
+    if not own:
+        machine["proportional_gain"] = LOOP_GAIN
     pose = waveform(time)
     try:
         setpoint = simulation.extensions_of(
@@ -188,7 +201,9 @@ def simulated(
         )
         run = simulation.simulate_platform(
             setpoint,
-            controller="pid",
+            controller=rig.control.law if own else "pid",
+            compensated=rig.control.compensated if own else True,
+            electronics=rig.control.electronics and own,
             pose=(pose[0, 0], pose[0, 1], HEIGHT + pose[0, 2]),
             params=machine.legs,
             valve_law=rig.model.valve,
@@ -201,11 +216,14 @@ def simulated(
     extension = run.legs("extension")
     if not (extension.min() > MARGIN and extension.max() < stroke - MARGIN):
         return None
-    pick = slice(None, None, round(STEP / period))
+    pick = slice(None, None, max(1, round(STEP / period)))
     names = of_legs(
         "valve_command", "extension", "chamber_pressure_lower", "chamber_pressure_upper"
     )
     signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
+    if own:
+        wanted = zip(of_legs("setpoint"), setpoint[pick].T, strict=True)
+        signals |= {name: np.ascontiguousarray(values) for name, values in wanted}
     for name, column in (
         ("supply_pressure", "supply_pressure_1"),
         ("roll", "roll"),

@@ -9,9 +9,11 @@ from sms.diagnosis.kind import Kind
 from sms.diagnosis.kind_bench import BENCH
 from sms.diagnosis.kind_bench_loop import BENCH_LOOP, BENCH_LOOP_BLIND
 from sms.diagnosis.kind_platform import PLATFORM
+from sms.diagnosis.kind_platform_loop import PLATFORM_LOOP, PLATFORM_LOOP_BLIND
 from sms.diagnosis.kind_tank import TANK
 from sms.io.errors import InputError
 from sms.io.rig import Rig
+from sms.io.signals import without_leg
 
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {
@@ -20,6 +22,13 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
         "platform": PLATFORM,
     }
 )
+LOOPS: Mapping[str, tuple[Kind, Kind]] = MappingProxyType(
+    {
+        "bench": (BENCH_LOOP, BENCH_LOOP_BLIND),
+        "platform": (PLATFORM_LOOP, PLATFORM_LOOP_BLIND),
+    }
+)
+"""Where a controller can be simulated: with its command recorded, and without."""
 
 
 def kind_of(rig: Rig) -> Kind:
@@ -31,9 +40,16 @@ def kind_of(rig: Rig) -> Kind:
         )
     if rig.control.controller == "recorded":
         return KINDS[rig.kind]
-    if rig.kind != "bench":
+    if rig.kind not in LOOPS:
         raise InputError(
-            f"{rig.path}, [control] controller: a controller is simulated on a bench only, not on a {rig.kind}; "
-            'write controller = "recorded" and record the command'
+            f"{rig.path}, [control] controller: a controller is simulated on a bench or a platform, not on a "
+            f'{rig.kind}; write controller = "recorded" and record the command'
         )
-    return BENCH_LOOP if "valve_command" in rig.signals else BENCH_LOOP_BLIND
+    held, blind = LOOPS[rig.kind]
+    commands = [s for s in held.outputs if without_leg(s) == "valve_command"]
+    recorded = [s for s in commands if s in rig.signals]
+    if recorded and recorded != commands:
+        raise InputError(
+            f"{rig.path}, [signals]: of the commands there is only {', '.join(recorded)}; list all of them, or none"
+        )
+    return held if recorded else blind

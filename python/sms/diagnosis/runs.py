@@ -19,6 +19,7 @@ from sms.diagnosis.result import Array
 from sms.diagnosis.runaway import WithinNumbers
 from sms.io.records import Record
 from sms.io.rig import Rig
+from sms.io.signals import without_leg
 
 Index = NDArray[np.int64]
 
@@ -129,7 +130,7 @@ class Runs:
         found = {
             f"{n} [{self.kind.units[n]}]": self.covariate([m.signals[n] for m in self.motions])
             for n in names
-            if n != "setpoint"
+            if without_leg(n) != "setpoint"
         }
         derived = [self.kind.derived(m) for m in self.motions]
         for name in derived[0]:

@@ -16,6 +16,7 @@ from sms.diagnosis.result import (
     Verdict,
 )
 from sms.io.rig import Rig
+from sms.io.signals import without_leg
 from sms.units_display import format_change, format_estimate, format_percent, format_quantity
 from sms.units_display import words as spaced
 
@@ -30,11 +31,12 @@ def of_command(rig: Rig) -> str:
     law = {"pid": "PID", "state_feedback": "state feedback"}[control.law]
     held = (
         "; the recorded command is held against what it makes of the recorded extension"
-        if "valve_command" in rig.signals
+        if any(without_leg(s) == "valve_command" for s in rig.signals)
         else ""
     )
+    whose = "the controller of each leg" if rig.kind == "platform" else "its controller"
     return (
-        f"Closed loop, its controller ({law}) simulated: it makes the valve's command from the recorded set-point and "
+        f"Closed loop, {whose} ({law}) simulated: it makes the valve's command from the recorded set-point and "
         f"the simulated extension{held}."
     )
 

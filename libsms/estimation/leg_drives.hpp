@@ -1,0 +1,37 @@
+// What drives the valves of three legs: of each leg what drives one (recorded_command.hpp, actuator_controller.hpp).
+#pragma once
+
+#include "estimation/platform_rates.hpp"
+#include "estimation/platform_sensors.hpp"
+
+namespace sms {
+namespace estimation {
+
+template <typename S, typename Drive>
+struct LegDrives {
+  Drive leg[3];
+
+  // Spools and drives where the window begins.
+  void begin(Pistons<S>& y) {
+    for (int i = 0; i < 3; ++i) {
+      leg[i].begin(y.leg[i].actuator);
+    }
+  }
+  // V, `at` counted in samples from the window's first.
+  Vec3<S> at(double at) const { return {leg[0].at(at), leg[1].at(at), leg[2].at(at)}; }
+  // Step i after sample k of the window begins at this state, which the sensors see.
+  void step_begins(int k, int i, const Pistons<S>& y, const PlatformSensors<S>& sensors, Pistons<S>& rate) {
+    for (int j = 0; j < 3; ++j) {
+      leg[j].step_begins(k, i, y.leg[j], sensors.leg[j], rate.leg[j]);
+    }
+  }
+  S* readings(int sample, S* out) const {
+    for (const Drive& drive : leg) {
+      out = drive.readings(sample, out);
+    }
+    return out;
+  }
+};
+
+}  // namespace estimation
+}  // namespace sms
