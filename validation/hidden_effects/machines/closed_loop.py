@@ -1,16 +1,15 @@
-"""The bench under a sampled position controller, its command held from one sample to the next.
+"""Bench and platform under sampled position controllers; records of such loops.
 
-Parallel PID (eq. 7.4 of the source by the bilinear transform), a step over the dead band (eq. 7.5), clipped to the
-valve's range. The controller reads the converter that the logger reads, at the same instants. What its owner
-believes of it stands in the rig file; what it really does may be something else.
+What the owner of a loop believes of the controller (controller.py) stands in the rig file; what it really does may be
+something else.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from math import atan, pi
 from pathlib import Path
 
 import numpy as np
@@ -19,36 +18,29 @@ from validation.compiled import compiled
 from validation.hidden_effects.machines import bench, effects
 from validation.hidden_effects.machines.air import Array, valve_map
 from validation.hidden_effects.machines.bench_rig import BenchRig
-from validation.hidden_effects.machines.declared import BENCH, as_declared, drawn
+from validation.hidden_effects.machines.closed_platform import ClosedPlatformRig
+from validation.hidden_effects.machines.controller import (
+    IN_RIG_FILE,
+    PLATFORM_CONTROLLER,
+    Controller,
+    answered,
+    delay,
+    read,
+    sample_at_valve,
+)
+from validation.hidden_effects.machines.declared import (
+    BENCH,
+    PLATFORM,
+    Declared,
+    as_declared,
+    drawn,
+)
 from validation.hidden_effects.machines.draw import Hidden, Trial, draw_runs, write_trial
 from validation.hidden_effects.machines.effects import Effect
 from validation.hidden_effects.machines.instruments import CHANNELS
 from validation.hidden_effects.machines.machine import Machine
-from validation.hidden_effects.machines.measured import Measured
+from validation.hidden_effects.machines.measured import Measured, VirtualRig
 from validation.hidden_effects.machines.truth import Truth
-
-
-@dataclass(frozen=True)
-class Controller:
-    """Numbers of the controller, SI."""
-
-    proportional: float = 12.0  # V/m
-    integral: float = 5.0  # V/(m s)
-    derivative: float = 0.2  # V s/m
-    corner: float = 60.0  # rad/s, of the derivative's filter
-    step: float = 0.5  # V, over the dead band
-    sharpness: float = 20.0  # 1/V
-
-
-IN_RIG_FILE = {
-    "proportional_gain": ("proportional", "V/m"),
-    "integral_gain": ("integral", "V/(m s)"),
-    "derivative_gain": ("derivative", "V s/m"),
-    "differentiator_corner": ("corner", "rad/s"),
-    "dead_band_step": ("step", "V"),
-    "dead_band_sharpness": ("sharpness", "1/V"),
-}
-"""Name in the rig file -> that of Controller, unit."""
 
 
 @compiled
@@ -67,30 +59,21 @@ def run(
 
     noise: of the sensor, m; count: one step of the converter, m; gains: Controller's numbers in their order.
     """
-    proportional, integral, derivative, corner, step, sharpness = gains
     period = bench.SAMPLE_STEP
     dt = period / bench.STEPS
     every = bench.STEPS // bench.FINE
-    late = p.command_delay + p.tube_length / np.sqrt(p.kappa * p.gas_constant * p.air_temperature)
-    scale = (5.0 - 2.0 * step / pi * atan(5.0 * sharpness)) / 5.0
+    late = delay(p)
     k1, k2 = np.zeros(bench.STATES), np.zeros(bench.STATES)
     k3, k4 = np.zeros(bench.STATES), np.zeros(bench.STATES)
-    error, sum_, slope = setpoint[0] - y[0], 0.0, 0.0
+    memory = np.array([setpoint[0] - y[0], 0.0, 0.0])
     states[0] = y
     for k in range(setpoint.size):
-        before = error
-        error = setpoint[k] - np.round((y[0] + noise[k]) / count) * count
-        sum_ += 0.5 * period * (error + before)
-        slope = ((2.0 - corner * period) * slope + 2.0 * corner * (error - before)) / (
-            2.0 + corner * period
-        )
-        u = min(5.0, max(-5.0, proportional * error + integral * sum_ + derivative * slope))
-        u = scale * u + 2.0 * step / pi * atan(sharpness * u)
-        commands[k] = min(10.0, max(0.0, 5.0 + u))
+        error = setpoint[k] - read(y[0], noise[k], count)
+        commands[k] = answered(gains, period, memory, error)
         if k == setpoint.size - 1:
             return
         for i in range(bench.STEPS):
-            sent = k + int(np.floor((i * dt - late) / period + 1e-9))
+            sent = sample_at_valve(k, i * dt, late, period)
             u = commands[sent] if sent >= 0 else 5.0
             now = k * period + i * dt
             bench.derivative(p, now, map_, y, 0.0, u, k1)
@@ -103,7 +86,7 @@ def run(
 
 
 class ClosedBenchRig(BenchRig):
-    """The bench with a controller; its owner believes it to be Controller()."""
+    """The bench with a controller."""
 
     title = "Virtual pneumatic actuator in its position loop"
 
@@ -114,7 +97,7 @@ class ClosedBenchRig(BenchRig):
         self, truth: Truth, plan: bench.Plan, reading_noise: Mapping[str, Array]
     ) -> Measured:
         """One run; for a sensor of the extension without errors, which is also the controller's."""
-        c, count = self.controller, plan.setpoint.size
+        count = plan.setpoint.size
         commands = np.zeros(count)
         states = np.zeros(((count - 1) * bench.FINE + 1, bench.STATES))
         run(
@@ -124,7 +107,7 @@ class ClosedBenchRig(BenchRig):
             plan.setpoint,
             reading_noise["extension"],
             CHANNELS["extension"].step,
-            np.array([c.proportional, c.integral, c.derivative, c.corner, c.step, c.sharpness]),
+            self.controller.gains,
             commands,
             states,
         )
@@ -136,6 +119,21 @@ class ClosedBenchRig(BenchRig):
         )
 
 
+@dataclass(frozen=True)
+class Loop:
+    """One kind of rig in a closed loop."""
+
+    rig: Callable[[Controller], VirtualRig]
+    declared: tuple[Declared, ...]  # what its owner knows of the machine
+    said: Controller  # what he believes of the controller
+
+
+LOOPS: Mapping[str, Loop] = {
+    "bench": Loop(ClosedBenchRig, BENCH, Controller()),
+    "platform": Loop(ClosedPlatformRig, PLATFORM, PLATFORM_CONTROLLER),
+}
+
+
 def draw_closed(
     seed: int,
     out: Path,
@@ -143,6 +141,7 @@ def draw_closed(
     effect: str | None = None,
     size: float = 0.0,
     command: bool = True,
+    kind: str = "bench",
 ) -> None:
     """Records of a loop with one thing wrong, or nothing, and a rig file whose controller is simulated.
 
@@ -150,30 +149,30 @@ def draw_closed(
     calls it ("proportional_gain"), wrong by that share. command: whether it is recorded.
     """
     for_rig, _, for_runs = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(3))
-    _, runs = draw_runs("bench", for_runs)
-    truth = drawn(as_declared(Truth(), BENCH), BENCH, (), for_rig)
-    controller, hidden = Controller(), []
+    _, runs = draw_runs(kind, for_runs)
+    loop = LOOPS[kind]
+    truth = drawn(as_declared(Truth(), loop.declared), loop.declared, (), for_rig)
+    controller, hidden = loop.said, []
     if effect in IN_RIG_FILE:
         name, unit = IN_RIG_FILE[effect]
         right = float(getattr(controller, name))
         controller = replace(controller, **{name: (1.0 + size) * right})
-        wrong = Effect("controller_mismatch", (), unit, ("bench",), 0.0, target=effect, shifts=True)
+        wrong = Effect("controller_mismatch", (), unit, (kind,), 0.0, target=effect, shifts=True)
         hidden.append(Hidden(wrong, size * right, None))
     elif effect is not None:
-        of_machine = effects.find("bench", effect)[0]
+        of_machine = effects.find(kind, effect)[0]
         truth = of_machine.hidden_in(truth, size)
         hidden.append(Hidden(of_machine, size, None))
-    write_trial(Trial(ClosedBenchRig(controller), runs, truth, hidden, seed), out, truth_path)
-    _state_the_loop(out / "rig.toml", command)
+    write_trial(Trial(loop.rig(controller), runs, truth, hidden, seed), out, truth_path)
+    _state_the_loop(out / "rig.toml", command, loop.said)
 
 
-def _state_the_loop(path: Path, command: bool) -> None:
+def _state_the_loop(path: Path, command: bool, said: Controller) -> None:
     """Adds to a rig file what its owner believes of the controller."""
-    text = path.read_text().replace("[signals]\n", '[signals]\nsetpoint = "setpoint"\n')
-    text = text.replace("The command runs straight", "The command is held")
-    if not command:
-        text = text.replace('valve_command = "valve_command"\n', "")
-    said = Controller()
+    text = path.read_text().replace("The command runs straight", "The command is held")
+    for line in re.findall(r"^valve_command.*\n", text, re.MULTILINE):
+        wanted = line.replace("valve_command", "setpoint")
+        text = text.replace(line, wanted + line if command else wanted)
     gains = [
         f"{parameter} = {json.dumps(f'{getattr(said, name):g} {unit}')}\n"
         for parameter, (name, unit) in IN_RIG_FILE.items()
