@@ -12,7 +12,7 @@ from sms import _core
 from sms.diagnosis import diagnose
 from sms.diagnosis.catalogue import catalogue
 from sms.diagnosis.gauss_newton import Free, fit_windows
-from sms.diagnosis.localise import hats
+from sms.diagnosis.localise import confirmed, hats
 from sms.diagnosis.screening import Nuisance, project, screen
 from sms.io.signals import without_leg
 
@@ -145,6 +145,21 @@ def test_hats_are_a_partition_of_one() -> None:
     functions = hats(np.linspace(-1.0, 2.0, 50), np.linspace(-1.0, 2.0, 5))
     assert functions.sum(axis=1) == pytest.approx(np.ones(50))
     assert functions.min() >= 0.0
+
+
+def test_a_curve_is_carried_as_far_as_one_record_confirms_it_of_another() -> None:
+    random = draw("confirmed curve")
+    columns, parts = random.normal(size=(4000, 7)), np.repeat([0, 1, -1], [2000, 1998, 2])
+    noise, curve = random.normal(size=4000), random.normal(size=7)
+    there = confirmed(columns, noise - columns @ curve, parts)
+    assert there.part == pytest.approx(1.0, abs=0.1)
+    assert there.taken == pytest.approx(float(np.sum((columns @ curve) ** 2)), rel=0.2)
+    # One record's own curve, which the other has the other way round, and noise alone.
+    opposed = np.where(parts == 0, 1.0, -1.0) * (columns @ curve)
+    for full in (noise - opposed, noise):
+        apart = confirmed(columns, full, parts)
+        assert apart.part < 0.5
+        assert -1e-6 <= apart.taken < 40.0
 
 
 # ---- the whole method ------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
 """The curve of what is not explained, carried along as a term: a better prediction, and no explanation.
 
-The curve was fitted to the identify records (localise.py). On records that it has not seen the simulation is corrected
-by it to first order, the initial states of the windows and the known parameters following within what is declared.
+The curve was fitted to the identify records, and as much of it is carried as they confirm of each other (localise.py).
+On records that it has not seen the simulation is corrected by it to first order, the initial states of the windows and
+the known parameters following within what is declared.
 """
 
 from __future__ import annotations
@@ -30,13 +31,13 @@ def empirical_of(
 
 
 def table_of(empirical: Empirical) -> str:
-    """The curve as CSV, columns `name [unit]`."""
+    """What is carried of the curve as CSV, columns `name [unit]`."""
     shape = empirical.shape
     header = (
         f"{shape.signal},{shape.equation} [{shape.unit}],half width of 95 percent [{shape.unit}]"
     )
     rows = (
-        f"{at:.9g},{value:.9g},{band:.3g}"
+        f"{at:.9g},{shape.confirmed * value:.9g},{shape.confirmed * band:.3g}"
         for at, value, band in zip(shape.at, shape.value, shape.band, strict=True)
     )
     return "\n".join((header, *rows)) + "\n"

@@ -3,9 +3,10 @@
 To the force balance a hidden force is added, to either chamber a hidden mass flow, to each reading a hidden error. What
 each of them would have to be is not guessed: it is any smooth function of one of the signals (velocity, extension,
 command, a pressure, time), a chain of straight lines over the signal's quantiles. Their footprints are the core's
-derivatives against an input at points of time, put together by the function's values there. How much of the excess each
-equation takes alone, by ridge regression, is its share; the function with which a single signal takes most is the shape
-of the missing term.
+derivatives against an input at points of time, put together by the function's values there. How much of the excess
+each equation takes alone, by ridge regression, is its share. The shape of the missing term is the function of a single
+signal that takes most of one record with the values that the others ask for: a curve over the wrong signal follows the
+noise of the record it was fitted to, and takes nothing of another.
 """
 
 from __future__ import annotations
@@ -130,8 +131,12 @@ def _columns(runs: Runs, hidden: Array, equation: str, functions: Array) -> Arra
 
 
 def with_curve(runs: Runs, nuisance: Nuisance, params: _core.Params, shape: Shape) -> Array:
-    """(rows,): how the residual changes, to first order, when the simulation carries a curve as a term."""
-    values = hats(signals_of(runs)[shape.signal], np.array(shape.at)) @ np.array(shape.value)
+    """(rows,): how the residual changes, to first order, when the simulation carries a curve as a term.
+
+    As much of it as is confirmed.
+    """
+    carried = shape.confirmed * np.array(shape.value)
+    values = hats(signals_of(runs)[shape.signal], np.array(shape.at)) @ carried
     return with_terms(runs, nuisance, params, {shape.equation: values})
 
 
@@ -260,11 +265,16 @@ def localise(
             min(low / max(excess, 1e-12), 1.0),
             min(high / max(excess, 1e-12), 1.0),
         )
-    best = max(bases, key=lambda b: taken[(b.equation, b.signal)])
+    parts = _parts(runs, len(nuisance.names))
+    carried = [confirmed(b.footprint, full, parts) for b in bases]
+    order = [(c.taken, taken[(b.equation, b.signal)]) for b, c in zip(bases, carried, strict=True)]
+    first = max(range(len(bases)), key=lambda k: order[k])
+    best = bases[first]
+    share = taken[(best.equation, best.signal)] / max(excess, 1e-12)
     return Hidden(
         shares,
         {f"{e} over {s}": t / max(excess, 1e-12) for (e, s), t in taken.items()},
-        _shape(best, full, blocks, taken[(best.equation, best.signal)] / max(excess, 1e-12)),
+        _shape(best, full, blocks, share, carried[first].part),
     )
 
 
@@ -273,6 +283,36 @@ def _blocks(runs: Runs, known: int) -> Index:
     every, channels = thinning(runs), len(runs.channels)
     rows = [-(-w.samples // every) * channels for w in runs.problem.windows]
     return np.repeat(np.arange(len(rows) + 1), [*rows, known])
+
+
+def _parts(runs: Runs, known: int) -> Index:
+    """Which part a row of a footprint belongs to: a record, or of a single one every other window."""
+    windows = runs.problem.windows
+    records = np.array([w.record for w in windows])
+    part = records if np.ptp(records) else np.arange(len(windows)) % 2
+    return np.append(part, -1)[_blocks(runs, known)]
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """What a curve takes of each part with the values that the other parts ask for."""
+
+    part: float
+    """Of the curve, 0..1: with this much of it the others' values take most."""
+    taken: float
+    """Of chi-square, with that."""
+
+
+def confirmed(columns: Array, full: Array, parts: Index) -> Confirmed:
+    """columns (n, pieces) against full (n,); what is declared, with parts (n,) -1, is in no part and asked in all."""
+    predicted = np.zeros(len(full))
+    for part in np.unique(parts[parts >= 0]):
+        here = parts == part
+        x, _ = _solve(columns[~here], full[~here])
+        predicted[here] = columns[here] @ x
+    norm = max(float(predicted @ predicted), 1e-300)
+    part = float(np.clip(-(predicted @ full) / norm, 0.0, 1.0))
+    return Confirmed(part, float(full @ full - np.sum((full + part * predicted) ** 2)))
 
 
 def _solve(columns: Array, full: Array) -> tuple[Array, Array]:
@@ -300,7 +340,7 @@ def _interval(
     return float(low), float(high)
 
 
-def _shape(basis: Basis, full: Array, blocks: Index, share: float) -> Shape:
+def _shape(basis: Basis, full: Array, blocks: Index, share: float, part: float) -> Shape:
     """The curve of the missing term with its band, from the scatter between windows."""
     x, scale = _solve(basis.footprint, full)
     a = basis.footprint / scale
@@ -316,4 +356,5 @@ def _shape(basis: Basis, full: Array, blocks: Index, share: float) -> Shape:
         tuple(2.0 * float(np.sqrt(v)) for v in np.diag(covariance)),
         basis.unit,
         share,
+        part,
     )

@@ -180,6 +180,8 @@ class Shape:
     unit: str
     share: float
     """Part of the excess that this curve takes."""
+    confirmed: float = 1.0
+    """Part of the curve that each fitted record confirms of what the others ask for, 0..1: what a model may carry."""
 
 
 @dataclass(frozen=True)

@@ -46,8 +46,9 @@ def _empirical(diagnosis: Diagnosis) -> str:
     shape = diagnosis.empirical.shape
     text = (
         f"Not explained: carried along as an empirical term in {words(shape.equation)} over "
-        f"{words(shape.signal.split(' [')[0])}, the curve above is worth this on records that it was not fitted to. It "
-        "predicts; it names no cause, and away from these records it may be wrong. Its numbers are in empirical.csv."
+        f"{words(shape.signal.split(' [')[0])}, the curve above is worth this on records that it was not fitted to. Of "
+        f"the curve {format_percent(shape.confirmed)} is carried: so much of it one fitted record confirms of another. "
+        "It predicts; it names no cause, and away from these records it may be wrong. Its numbers are in empirical.csv."
     )
     return (
         f'<p id="empirical">{esc(text)}</p>{gain_table(diagnosis.empirical.gain, "With the curve")}'
