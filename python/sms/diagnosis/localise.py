@@ -166,6 +166,11 @@ def leg_of(name: str) -> str:
     return found[1] if found else ""
 
 
+def without_leg(name: str) -> str:
+    """ "velocity_2 [m/s]" -> "velocity [m/s]"."""
+    return _LEG.sub("", name)
+
+
 def belong_together(equation: str, signal: str) -> bool:
     """Whether a term of this equation may follow this signal: another leg's it does not."""
     return not leg_of(signal) or leg_of(equation) == leg_of(signal)
@@ -176,7 +181,7 @@ def alike(equations: Sequence[str]) -> dict[str, list[int]]:
     found: dict[str, list[int]] = {}
     for number, equation in enumerate(equations):
         if leg_of(equation):
-            found.setdefault(_LEG.sub("", equation), []).append(number)
+            found.setdefault(without_leg(equation), []).append(number)
     return found
 
 
@@ -184,7 +189,7 @@ def alike_signals(signals: Mapping[str, Array]) -> dict[str, list[Array]]:
     """ "velocity [m/s]" -> that of each leg; what has no leg is the same for all."""
     found: dict[str, list[Array]] = {}
     for name, values in signals.items():
-        found.setdefault(_LEG.sub("", name), []).extend(
+        found.setdefault(without_leg(name), []).extend(
             [values] * (1 if leg_of(name) else len(LEGS))
         )
     return found
@@ -220,18 +225,24 @@ def thinning(runs: Runs) -> int:
 def _through_plant(runs: Runs, hidden: Array, functions: Array) -> Array:
     """Footprint of a hidden input that follows functions (rows, pieces) of a signal."""
     out = np.zeros((len(hidden), functions.shape[1]))
-    channels = len(runs.channels)
-    for w in runs.problem.windows:
+    for w, values in zip(runs.problem.windows, at_knots(runs, functions), strict=True):
         rows = slice(w.row, w.row + w.rows)
-        of_samples = functions[rows][::channels]
+        out[rows] = hidden[rows] @ values
+    return out
+
+
+def at_knots(runs: Runs, functions: Array) -> Array:
+    """(windows, KNOTS, pieces): functions (rows, pieces) of a signal at the points of time of each window."""
+    channels, out = len(runs.channels), []
+    for w in runs.problem.windows:
+        of_samples = functions[w.row : w.row + w.rows][::channels]
         place = np.linspace(0, w.samples - 1, KNOTS)
         # The mean around a knot, so that a term that jumps at a reversal is not caught by one sample.
         half = max(1, round(0.5 * (w.samples - 1) / (KNOTS - 1)))
-        at_knots = np.array(
+        out.append(
             [of_samples[max(0, round(p) - half) : round(p) + half + 1].mean(axis=0) for p in place]
         )
-        out[rows] = hidden[rows] @ at_knots
-    return out
+    return np.array(out)
 
 
 def _free_of_start(runs: Runs, columns: Array) -> Array:

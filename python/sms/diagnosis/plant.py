@@ -31,6 +31,8 @@ from sms.diagnosis.in_use import in_use
 from sms.diagnosis.kind import Kind, Run
 from sms.diagnosis.kinds import KINDS, kind_of
 from sms.diagnosis.localise import localise
+from sms.diagnosis.memory import Memory, memory
+from sms.diagnosis.other_law import OtherLaw, other_law
 from sms.diagnosis.plan import plan_next
 from sms.diagnosis.plant_words import (
     conclusion,
@@ -54,7 +56,7 @@ from sms.diagnosis.result import (
 from sms.diagnosis.rounds import Outcome, Progress, find_causes
 from sms.diagnosis.runs import Runs, make_run, noise_of
 from sms.diagnosis.search import Trial
-from sms.diagnosis.size import OtherLaw, found_value, other_law, record_by_record
+from sms.diagnosis.size import found_value, record_by_record
 from sms.diagnosis.symptoms import symptoms_of
 from sms.diagnosis.visible import testable
 from sms.io.errors import InputError
@@ -75,7 +77,7 @@ class Case:
     verdict: Verdict
     contradiction: Contradiction | None = None
     """With the verdict data-fault."""
-    other_law: OtherLaw | None = None
+    other_law: OtherLaw | Memory | None = None
     """What speaks against the nearest explanation, with the verdict unknown."""
 
     def where(self, rng: np.random.Generator) -> Hidden:
@@ -149,20 +151,35 @@ def investigate(
     )
     after = excess_of(outcome.final, data)
     verdict = decide(outcome, before, after)
-    laws = [other_law(outcome.final, members[0].effect, data) for members in outcome.found]
-    other = next((law for law in laws if law is not None), None)
-    if outcome.classes and other is not None and verdict != "no-evidence":
-        verdict = "unknown"
     found = None
     if verdict == "unknown" or not all(
         _consistent(c[0], outcome.final, data) for c in outcome.classes
     ):
         found = contradiction(baseline, data, able, before.floor)
+    other = _other_law(outcome, data)
+    if outcome.classes and other is not None and verdict != "no-evidence":
+        verdict = "unknown"
     if found is not None:
         verdict = "data-fault"
     if verdict in ("unknown", "data-fault"):
         outcome = replace(outcome, named=False)
     return Case(data, baseline, outcome, before, after, blind, verdict, found, other)
+
+
+def _other_law(outcome: Outcome, data: Data) -> OtherLaw | Memory | None:
+    """Of the first class in which nothing is what it is called: how that shows of the one that comes nearest."""
+    for members in outcome.found:
+        laws = (
+            _not_as_called(m, outcome.final if m is members[0] else m.fitted, data) for m in members
+        )
+        nearest = next(laws)
+        if nearest is not None and all(law is not None for law in laws):
+            return nearest
+    return None
+
+
+def _not_as_called(member: Trial, fitted: Fitted, data: Data) -> OtherLaw | Memory | None:
+    return other_law(fitted, member.effect, data) or memory(fitted, member.effect, data)
 
 
 def _consistent(cause: Trial, final: Fitted, data: Data) -> bool:

@@ -8,8 +8,9 @@ from sms.diagnosis.catalogue import Effect
 from sms.diagnosis.contradiction import Contradiction
 from sms.diagnosis.excess import Excess
 from sms.diagnosis.localise import alike
+from sms.diagnosis.memory import Memory
+from sms.diagnosis.other_law import OtherLaw
 from sms.diagnosis.result import Cause, FedEquations, Finding, Gain, Hidden, Verdict
-from sms.diagnosis.size import OtherLaw
 from sms.diagnosis.words import capital, chosen_again, explained, judged_crosswise
 from sms.parameters import Parameter
 from sms.units_display import format_aligned, format_percent, format_quantity
@@ -79,7 +80,7 @@ def shape_in_words(hidden: Hidden) -> str:
 
 def nearest_in_words(
     nearest: Effect,
-    law: OtherLaw | None,
+    law: OtherLaw | Memory | None,
     before: Excess,
     after: Excess,
     table: Mapping[str, Parameter],
@@ -91,10 +92,17 @@ def nearest_in_words(
             f"Nearest comes {nearest.title}, which takes {format_percent(takes)} of the error that is not noise: "
             "not enough to be its cause."
         )
+    name = law.effect.parameters[0]
+    if isinstance(law, Memory):
+        alone, beside = format_aligned([law.alone, law.beside[0]], table[name].unit, name)
+        return (
+            f"Nearest comes {law.effect.title}, but its size would be {alone} alone and {beside} beside a play of "
+            f"{format_quantity(law.play[0], 'V')} between command and spool: what the valve does depends on the way "
+            "that the command came."
+        )
     signal, unit = (
         law.signal.removesuffix("]").split(" [") if "[" in law.signal else (law.signal, "1")
     )
-    name = law.effect.parameters[0]
     low, high = format_aligned([law.low[0], law.high[0]], table[name].unit, name)
     return (
         f"Nearest comes {law.effect.title}, but its size would be {low} where {spaced(signal)} is below "

@@ -1,14 +1,10 @@
-"""How large a cause is: in one record alone, and where a signal is low or high.
+"""How large a cause is: over all records, in one of them alone, and in any part of their windows.
 
-A law that is right has one number. Estimated from a part of the windows it comes out the same, whichever part: a leak
-that is twice as large at high pressure as the law says is another leak, however well a compromise may fit. So the
-windows are halved along each signal, and the two halves asked for the number separately. What else is free may move in
-each of them by itself, within what is declared.
+A part is asked by itself: what else is free may move in it as it likes, within what is declared.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,33 +15,16 @@ from sms.diagnosis.evidence import value_of
 from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, refitted
 from sms.diagnosis.result import Array, ParameterValue
 from sms.diagnosis.runs import Runs
+from sms.diagnosis.screening import Nuisance
 from sms.diagnosis.statistics import Index
 from sms.diagnosis.visible import raw_columns
-
-APART = 10.0
-"""Standard errors between the halves' sizes from which a law counts as another one."""
-APART_BY = 0.2
-"""Of the size itself, besides: no description of friction or flow is right to the last tenth everywhere."""
 
 Estimate = tuple[float, float]
 """Value and standard error."""
 
 
 @dataclass(frozen=True)
-class OtherLaw:
-    """A cause that is of one size where a signal is low, and of another where it is high."""
-
-    effect: Effect
-    signal: str
-    """Signal with its SI unit, "chamber_pressure_lower [Pa]"; the mean over a window counts."""
-    cut: float
-    """Between low and high, SI."""
-    low: Estimate
-    high: Estimate
-
-
-@dataclass(frozen=True)
-class _ByWindow:
+class ByWindow:
     """The normal equations of a cause's parameter beside all that is free, for each window of one role's records."""
 
     value: float
@@ -102,7 +81,7 @@ def found_value(fitted: Fitted, effect: Effect, data: Data) -> ParameterValue:
 def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, Estimate]:
     """Record -> the parameter refitted on it alone with its error, the free parameters within what is declared."""
     out = {}
-    for part in _parts(fitted, effect, data):
+    for part in parts_of(fitted, effect, data):
         for number, name in enumerate(part.names):
             found = part.size(part.record == number)
             if found is not None:
@@ -110,36 +89,8 @@ def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, Es
     return out
 
 
-def other_law(fitted: Fitted, effect: Effect, data: Data) -> OtherLaw | None:
-    """The signal along which a cause's size differs most, if it is not the same everywhere."""
-    parts = _parts(fitted, effect, data)
-    shift = abs(parts[0].value - data.rig.declared(effect.parameters[0]).value)
-    found, most = None, APART
-    for signal in (n for n in parts[0].mean if all(n in p.mean for p in parts)):
-        cut = float(np.median(np.concatenate([p.mean[signal] for p in parts])))
-        low = _together([p.size(p.mean[signal] <= cut) for p in parts])
-        high = _together([p.size(p.mean[signal] > cut) for p in parts])
-        if low is None or high is None:
-            continue
-        apart = abs(high[0] - low[0])
-        errors = apart / float(np.hypot(low[1], high[1]))
-        if errors > most and apart > APART_BY * shift:
-            found, most = OtherLaw(effect, signal, cut, low, high), errors
-    return found
-
-
-def _together(estimates: Sequence[Estimate | None]) -> Estimate | None:
-    """The weighted mean of independent estimates."""
-    known = [e for e in estimates if e is not None]
-    if not known:
-        return None
-    weight = np.array([1.0 / e**2 for _, e in known])
-    mean = float(np.sum(weight * np.array([v for v, _ in known])) / np.sum(weight))
-    return mean, float(1.0 / np.sqrt(np.sum(weight)))
-
-
-def _parts(fitted: Fitted, effect: Effect, data: Data) -> list[_ByWindow]:
-    """Of the records that were fitted, and of those that were not."""
+def parts_of(fitted: Fitted, effect: Effect, data: Data) -> list[ByWindow]:
+    """A cause window by window, of the records that were fitted and of those that were not."""
     assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
     return [
         _by_window(data.identify, fitted, effect),
@@ -147,13 +98,11 @@ def _parts(fitted: Fitted, effect: Effect, data: Data) -> list[_ByWindow]:
     ]
 
 
-def _by_window(runs: Runs, at: Fitted, effect: Effect) -> _ByWindow:
+def _by_window(runs: Runs, at: Fitted, effect: Effect) -> ByWindow:
     name = effect.parameters[0]
     residual = at.fit.residual
-    column = _column(runs, at, effect)
-    nuisance = nuisance_of(at)
-    if name in nuisance.names:
-        nuisance = nuisance.without(name)
+    column = column_of(runs, at, effect)
+    nuisance = _others_free(at, effect)
     columns = np.column_stack([nuisance.jacobian, column])
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     stacked = np.column_stack([columns / scale, residual])
@@ -161,7 +110,7 @@ def _by_window(runs: Runs, at: Fitted, effect: Effect) -> _ByWindow:
     parts = np.split(stacked, first[1:])
     rows = np.array([len(part) for part in parts])
     pull = nuisance.pull / scale[:-1]
-    return _ByWindow(
+    return ByWindow(
         at.params[name],
         np.array([part.T @ part for part in parts]),
         pull**2,
@@ -170,11 +119,49 @@ def _by_window(runs: Runs, at: Fitted, effect: Effect) -> _ByWindow:
         rows,
         [run.name for run in runs.motions],
         runs.record[first],
-        {n: np.add.reduceat(v, first) / rows for n, v in _drawn_over(runs).items()},
+        {n: np.add.reduceat(v, first) / rows for n, v in drawn_over(runs).items()},
     )
 
 
-def _column(runs: Runs, at: Fitted, effect: Effect) -> Array:
+@dataclass(frozen=True)
+class Beside:
+    """What all else that is free cannot undo of a cause, at one model."""
+
+    nuisance: Nuisance
+    basis: Array
+    residual: Array
+    """(rows + known,), less what the others can undo."""
+
+    def gram(self, columns: Array) -> Array:
+        """(m + 1, m + 1): products of footprints (rows, m) and of the residual, less what the others can undo."""
+        full = self.nuisance.with_declared(columns)
+        left = np.column_stack([full - self.basis @ (self.basis.T @ full), self.residual])
+        return np.asarray(left.T @ left)
+
+
+def beside(at: Fitted, effect: Effect) -> Beside:
+    nuisance = _others_free(at, effect)
+    basis = nuisance.basis()
+    full = np.concatenate([at.fit.residual, nuisance.pull * nuisance.off])
+    return Beside(nuisance, basis, full - basis @ (basis.T @ full))
+
+
+def linear(gram: Array, rows: int) -> tuple[Array, Array] | None:
+    """The step (m,) from such products, summed over records, and its covariance (m, m); None where one is not seen."""
+    information, score = gram[:-1, :-1], gram[:-1, -1]
+    if np.linalg.det(information) <= 1e-12 * float(np.prod(np.diag(information))):
+        return None
+    inverse = np.linalg.inv(information)
+    step = -inverse @ score
+    return step, inverse * float(gram[-1, -1] + score @ step) / rows
+
+
+def _others_free(at: Fitted, effect: Effect) -> Nuisance:
+    nuisance, name = nuisance_of(at), effect.parameters[0]
+    return nuisance.without(name) if name in nuisance.names else nuisance
+
+
+def column_of(runs: Runs, at: Fitted, effect: Effect) -> Array:
     """(rows,): change of the residual with the cause's parameter."""
     free = list(at.hypothesis.free)
     if effect.step is None and effect.parameters[0] in free:
@@ -182,7 +169,7 @@ def _column(runs: Runs, at: Fitted, effect: Effect) -> Array:
     return raw_columns(at, runs, [effect])[:, 0]
 
 
-def _drawn_over(runs: Runs) -> dict[str, Array]:
+def drawn_over(runs: Runs) -> dict[str, Array]:
     """(rows,) each: what the machine was doing; of what goes both ways, how far too."""
     inputs = runs.inputs
     both = {n: v for n, v in inputs.items() if np.min(v) < 0.0 < np.max(v)}

@@ -1,0 +1,91 @@
+"""Whether the valve remembers: a cause's size beside a play between command and spool.
+
+A spool that sticks follows the command at a distance, on the side that it comes from. While every opening starts from
+the centre that is hardly another thing than a wider dead band; but a dead band has one width both ways, and this one
+opens late and closes late. A law of the catalogue knows no past. So the commands of the records are led through a play,
+and the cause is asked for its size beside what that changes: a right one keeps it, one that stood in for the play
+loses it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sms.diagnosis.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted, refitted
+from sms.diagnosis.kind import Run
+from sms.diagnosis.other_law import APART, APART_BY
+from sms.diagnosis.prepare import Comparison
+from sms.diagnosis.result import Array
+from sms.diagnosis.runs import Runs
+from sms.diagnosis.size import Estimate, beside, column_of, linear
+
+PLAY = 0.02
+"""V to either side, for which the footprint is taken: more than the noise of a command, less than a dead band."""
+
+
+@dataclass(frozen=True)
+class Memory:
+    """A cause that has hardly its size any more where the valve may have a play."""
+
+    effect: Effect
+    alone: float
+    beside: Estimate
+    play: Estimate
+    """V to either side."""
+
+
+def memory(fitted: Fitted, effect: Effect, data: Data) -> Memory | None:
+    """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none."""
+    gram, rows = np.zeros((3, 3)), 0
+    for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
+        played = _footprint(runs, at, effect)
+        if played is None:
+            return None
+        assert isinstance(runs, Runs)
+        both = np.column_stack([column_of(runs, at, effect), played])
+        gram += beside(at, effect).gram(both)
+        rows += len(both)
+    found = linear(gram, rows)
+    if found is None:
+        return None
+    (step, play), covariance = found
+    error, play_error = np.sqrt(np.diag(covariance))
+    alone = fitted.params[effect.parameters[0]]
+    shift = abs(alone - data.rig.declared(effect.parameters[0]).value)
+    if play < APART * play_error or abs(step) < max(APART * error, APART_BY * shift):
+        return None
+    return Memory(
+        effect, alone, (float(alone + step), float(error)), (float(play), float(play_error))
+    )
+
+
+def _footprint(runs: Comparison | Runs, at: Fitted, effect: Effect) -> Array | None:
+    """(rows,): change of the residual per volt of play; None where no recorded command opens the valve."""
+    assert isinstance(runs, Runs)
+    leg = effect.parameters[0].partition(":")[2]
+    names = [n for n in runs.motions[0].signals if n.startswith("valve_command") and leg in n]
+    if any(
+        n in runs.channels for n in names
+    ):  # the controller is simulated, and its output compared
+        return None
+    if not names:
+        return None
+    motions = tuple(_with_play(run, names) for run in runs.motions)
+    changed = replace(runs, motions=motions).problem.errors(at.params)
+    return np.asarray((changed - runs.problem.errors(at.params)) / PLAY)
+
+
+def _with_play(run: Run, names: list[str]) -> Run:
+    return replace(run, signals=run.signals | {n: after_play(run.signals[n], PLAY) for n in names})
+
+
+def after_play(command: Array, play: float) -> Array:
+    """(n,): what follows a command (n,) and is pulled along where that is `play` away."""
+    out, seat = np.empty_like(command), float(command[0])
+    for k, driven in enumerate(command):
+        seat = min(max(seat, driven - play), driven + play)
+        out[k] = seat
+    return out
