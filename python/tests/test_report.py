@@ -138,6 +138,23 @@ def test_without_a_cause_there_is_no_extended_model(verdict: Verdict) -> None:
     assert curves["extended"] is False
 
 
+def test_what_a_later_round_names_is_not_put_out() -> None:
+    said = diagnosis("combination")
+    early = [
+        replace(c, round=1, accepted=False, reason="helps less than the best", p_value=1e-9)
+        for c in said.candidates
+        if c.round == 2
+    ]
+    cards = re.findall(
+        r'<article class="card cause".*?</article>',
+        report_html(replace(said, candidates=(*said.candidates, *early))),
+        re.DOTALL,
+    )
+    assert "direction" in cards[0].partition("Considered and put out")[2]
+    for card in cards:
+        assert "pressure_dependent" not in card.partition("Considered and put out")[2]
+
+
 def test_a_fault_in_the_data_comes_first() -> None:
     html = html_of("data-fault")
     assert html.index('id="data-check"') < html.index('id="provenance"')

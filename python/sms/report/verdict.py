@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from sms.diagnosis.result import Candidate, Cause, Diagnosis, Member, ParameterValue, Verdict
+from sms.diagnosis.result import Cause, Diagnosis, Member, ParameterValue, Verdict
 from sms.report.markup import Scale, dot, effect_label, empty, esc, paragraphs, section, table
 from sms.units_display import (
     capital,
@@ -132,25 +132,28 @@ def _card(number: int, cause: Cause, diagnosis: Diagnosis) -> str:
         f"{_amounts(cause)}{paragraphs([cause.explanation])}"
     )
     note = f'<p class="small"><code>{esc(identifier)}</code> · {_significance(cause)}</p>'
-    evidence = _consistency(cause, diagnosis.records) + _against(cause, diagnosis.candidates)
+    evidence = _consistency(cause, diagnosis.records) + _against(cause, diagnosis)
     columns = (about + evidence + note, _members(cause)) if several else (about + note, evidence)
     body = "".join(f"<div>{column}</div>" for column in columns)
     return f'<article class="card cause" data-effect="{esc(identifier)}">{body}</article>'
 
 
-def _against(cause: Cause, candidates: Sequence[Candidate]) -> str:
-    """The explanations that the data speak for too, taken alone, and why they are not named."""
+def _against(cause: Cause, diagnosis: Diagnosis) -> str:
+    """The explanations that the data speak for too, taken alone, and why no round names them."""
+    named = {(found.effect, found.signal) for found in diagnosis.causes}
+    named |= {(m.effect, m.signal) for found in diagnosis.causes for m in found.alternatives}
     round_ = next(
         (
             c.round
-            for c in candidates
+            for c in diagnosis.candidates
             if c.accepted and (c.effect, c.signal) == (cause.effect, cause.signal)
         ),
         None,
     )
     out: dict[str, list[str]] = {}
-    for c in candidates:
-        if c.round == round_ and not c.accepted and c.p_value <= SPEAKS:
+    for c in diagnosis.candidates:
+        stands_alone = c.round == round_ and not c.accepted and c.p_value <= SPEAKS
+        if stands_alone and (c.effect, c.signal) not in named:
             out.setdefault(c.reason, []).append(effect_label(c.effect, c.signal))
     if not out:
         text = "No other effect of the catalogue speaks from these records once chance is paid for."
