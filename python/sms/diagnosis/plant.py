@@ -80,6 +80,11 @@ class Case:
     other_law: OtherLaw | Memory | None = None
     """What speaks against the nearest explanation, with the verdict unknown."""
 
+    @property
+    def final(self) -> Fitted:
+        """The model that the answer stands for: the baseline where nothing is named."""
+        return self.outcome.final if self.outcome.named else self.baseline
+
     def where(self, rng: np.random.Generator) -> Hidden:
         """Which equation the baseline's error comes from, by hidden inputs in the simulation."""
         return _hidden(self.baseline, self.data, self.before, rng)
@@ -207,40 +212,24 @@ def complete(
     empirical: bool = False,
 ) -> Diagnosis:
     """The whole answer, in numbers and in words; `empirical` asks for the curve of an unknown as a term."""
-    data, baseline, outcome = case.data, case.baseline, case.outcome
-    if case.contradiction is not None:
-        said = words_of_contradiction(case.contradiction, data.rig.path.name)
-        blank = replace(blank, findings=(*blank.findings, said))
-    causes = tuple(_cause(members, case) for members in outcome.classes)
-    final = outcome.final if outcome.named else baseline
+    data, baseline, final = case.data, case.baseline, case.final
+    causes = tuple(_cause(members, case) for members in case.outcome.classes)
     progress("asking which equation is wrong", 0.85)
     hidden, fed = case.where(rng), case.fed(np.random.default_rng(blank.seed))
     left = _hidden(final, data, case.after, rng) if causes else None
     gain = _gains(baseline, final, data, case.after.floor, rng)
-    nearest = ""
-    if outcome.found:
-        effect, law = outcome.found[0][0].effect, case.other_law
-        nearest = nearest_in_words(effect, law, case.before, case.after, data.rig.table)
     curve = None
     if empirical and case.verdict == "unknown":
         progress("measuring what the curve of the unknown is worth", 0.88)
         curve = empirical_of(baseline, data, hidden.shape, case.before.floor, rng)
     progress("choosing the next experiment", 0.9)
-    plan = plan_next(
-        case.verdict, [[m.effect for m in c] for c in outcome.classes], final, data, hidden
-    )
+    classes = [[m.effect for m in members] for members in case.outcome.classes]
     start = baseline.hypothesis.start
-    return replace(
+    answer = replace(
         blank,
         verdict=case.verdict,
-        sentence=sentence(case.verdict, causes, hidden)
-        if case.contradiction is None
-        else sentence_of_contradiction(case.contradiction),
-        conclusion=conclusion(
-            case.verdict, causes, gain, hidden, fed, left, case.before, case.after, nearest
-        ),
         causes=causes,
-        candidates=candidates_of(outcome.rounds),
+        candidates=candidates_of(case.outcome.rounds),
         not_testable=tuple(case.blind),
         symptoms=symptoms_of(baseline, data, case.before.floor),
         gain=gain,
@@ -251,14 +240,34 @@ def complete(
         empirical=curve,
         noise_floor={},
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
-        next_experiment=plan,
-        series=tuple(
-            s
-            for part in (data.identify, data.validate, data.test)
-            if isinstance(part, Runs)
-            for s in _series(part, baseline, final, data)
-        ),
+        next_experiment=plan_next(case.verdict, classes, final, data, hidden),
+        series=_all_series(case),
     )
+    return _with_words(answer, case, hidden)
+
+
+def _with_words(answer: Diagnosis, case: Case, hidden: Hidden) -> Diagnosis:
+    """The answer's numbers as sentences, and what the records themselves have against each other as a finding."""
+    table, nearest = case.data.rig.table, ""
+    if case.outcome.found:
+        effect, law = case.outcome.found[0][0].effect, case.other_law
+        nearest = nearest_in_words(effect, law, case.before, case.after, table)
+    findings, said = answer.findings, sentence(case.verdict, answer.causes, hidden)
+    if case.contradiction is not None:
+        named = words_of_contradiction(case.contradiction, case.data.rig.path.name)
+        findings, said = (*findings, named), sentence_of_contradiction(case.contradiction)
+    concluded = conclusion(
+        case.verdict,
+        answer.causes,
+        answer.gain,
+        hidden,
+        answer.fed,
+        answer.hidden_left,
+        case.before,
+        case.after,
+        nearest,
+    )
+    return replace(answer, findings=findings, sentence=said, conclusion=concluded)
 
 
 # ---- causes ------------------------------------------------------------
@@ -298,6 +307,12 @@ def _hidden(fitted: Fitted, data: Data, excess: Excess, rng: np.random.Generator
     rows = len(runs.channel) / len(runs.channels)
     chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
     return localise(runs, nuisance_of(fitted), fitted.fit.residual, fitted.params, chi_square, rng)
+
+
+def _all_series(case: Case) -> tuple[Series, ...]:
+    data = case.data
+    parts = [p for p in (data.identify, data.validate, data.test) if isinstance(p, Runs)]
+    return tuple(s for part in parts for s in _series(part, case.baseline, case.final, data))
 
 
 def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Series]:
