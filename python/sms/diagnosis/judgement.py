@@ -145,6 +145,8 @@ def by_window(seen: Array, unseen: Array, data: Data) -> Array:
 
 TELLS_APART = 3.0
 """Standard errors of the difference between two rivals, over windows, from which the worse one is out."""
+NEARLY_EVERY = 0.9
+"""Share of the windows in which a rival leaves more."""
 TELLS_ALIKE_APART = 0.05
 """Of the chi-square that the best takes: what one that looks alike must leave more, besides, to be out.
 
@@ -169,7 +171,7 @@ def _best_of_runs(
     for trial in accepted:
         alike = best.similarity[trial.effect.key] > ALIKE
         worse = left[trial.effect.key] - left[best.effect.key]
-        out = told_apart(worse, least if alike else 0.0)
+        out = told_apart(worse, least if alike else 0.0, left[best.effect.key])
         if not alike:
             out = out or _takes_less(trial, best, before, left)
         if trial is best or not out:
@@ -185,8 +187,14 @@ def _takes_less(trial: Trial, best: Trial, before: Array, left: Mapping[str, Arr
     return takes < 0.9 * most
 
 
-def told_apart(worse: Array, least: float) -> bool:
-    """Whether a rival leaves more than the best, from the differences of chi-square (windows,), and by `least`."""
+def told_apart(worse: Array, least: float, best: Array) -> bool:
+    """Whether a rival leaves more than the best, from the differences of chi-square (windows,), and by `least`.
+
+    best: (windows,) that the best leaves. A rival that leaves more than twice that, and more in nearly every window, is
+    out however much the windows differ in size.
+    """
+    if float(worse.sum()) > max(float(best.sum()), least) and np.mean(worse > 0.0) > NEARLY_EVERY:
+        return True
     scatter = float(np.std(worse) * np.sqrt(len(worse)))
     return float(worse.sum()) > max(TELLS_APART * scatter, least)
 

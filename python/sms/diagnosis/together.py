@@ -73,6 +73,7 @@ def _in_presence(
             and not told_apart(
                 _left(fitted, data) - _left(final, data),
                 least if best.similarity[m.effect.key] > ALIKE else 0.0,
+                _left(final, data),
             )
             and alone - _left(fitted, data).sum() >= NEARLY * (alone - left)
         ]
