@@ -54,7 +54,7 @@ def follows(error: Array, extension: Array) -> float:
     return max(float(np.corrcoef(error[: len(s)], s)[0, 1]) for s in late)
 
 
-LOOPS = [("bench", True), ("bench", False), ("platform", True)]
+LOOPS = [(kind, command) for kind in ("bench", "platform") for command in (True, False)]
 
 
 @pytest.mark.full
