@@ -16,6 +16,7 @@ from sms.diagnosis.console import print_diagnosis
 from sms.diagnosis.kind import Run
 from sms.diagnosis.kind_bench import MENU
 from sms.diagnosis.kind_platform import MENU as PLATFORM_MENU
+from sms.diagnosis.kind_platform import PLATFORM
 from sms.diagnosis.kind_platform_loop import COMMANDS, PLATFORM_LOOP, PLATFORM_LOOP_BLIND
 from sms.diagnosis.kinds import kind_of
 from sms.diagnosis.plant import make_data
@@ -73,6 +74,14 @@ def test_of_three_commands_all_are_recorded_or_none(tmp_path: Path) -> None:
         kind_of(load_rig(path))
     changed(path, ("valve_command_1 = {}\n", ""), ("valve_command_3 = {}\n", ""))
     assert kind_of(load_rig(path)) is PLATFORM_LOOP_BLIND
+
+
+def test_of_the_attitude_both_angles_are_recorded_or_none(tmp_path: Path) -> None:
+    path = write_platform(tmp_path, 1, {}, 1.0)
+    assert kind_of(load_rig(path)) is PLATFORM
+    changed(path, ("[signals]\n", '[signals]\nroll = { noise = "0.01 deg" }\n'))
+    with pytest.raises(InputError, match="of the attitude there is only roll; list all of them"):
+        kind_of(load_rig(path))
 
 
 @pytest.mark.parametrize("kind", ["bench", "platform"])

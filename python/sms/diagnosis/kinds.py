@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from sms.diagnosis.kind import Kind
@@ -32,12 +32,16 @@ LOOPS: Mapping[str, tuple[Kind, Kind]] = MappingProxyType(
 
 
 def kind_of(rig: Rig) -> Kind:
-    """A rig's kind, with its controller as the rig file says. InputError for one that is not simulated."""
+    """A rig's kind, with its controller as the rig file says.
+
+    InputError for one that is not simulated, and where of signals that belong together only some are listed.
+    """
     if rig.kind not in KINDS:
         raise InputError(
             f"{rig.path}: a {rig.kind} is not simulated against its records; "
             f"what is: {', '.join(KINDS)}"
         )
+    _recorded(rig, "the attitude", ["roll", "pitch"])
     if rig.control.controller == "recorded":
         return KINDS[rig.kind]
     if rig.kind not in LOOPS:
@@ -47,9 +51,14 @@ def kind_of(rig: Rig) -> Kind:
         )
     held, blind = LOOPS[rig.kind]
     commands = [s for s in held.outputs if without_leg(s) == "valve_command"]
-    recorded = [s for s in commands if s in rig.signals]
-    if recorded and recorded != commands:
+    return held if _recorded(rig, "the commands", commands) else blind
+
+
+def _recorded(rig: Rig, what: str, signals: Sequence[str]) -> bool:
+    """Whether signals that belong together are recorded; InputError where only some are."""
+    listed = [s for s in signals if s in rig.signals]
+    if listed and len(listed) < len(signals):
         raise InputError(
-            f"{rig.path}, [signals]: of the commands there is only {', '.join(recorded)}; list all of them, or none"
+            f"{rig.path}, [signals]: of {what} there is only {', '.join(listed)}; list all of them, or none"
         )
-    return held if recorded else blind
+    return bool(listed)
