@@ -104,12 +104,12 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
       const Window w = begun(params, k);
       Shot shot = jacobian != nullptr ? search(params, w) : shoot(params, w);
       residual->segment(w.row, w.rows) = shot.residual;
-      found_[k] = shot.start;
+      found_[k] = place_of(shot, w);
       if (jacobian != nullptr) {
         find_slopes(params, w, &shot);
         shot.factor();
         follow_[k] = differentiate(params, free, w, shot, jacobian);
-        windows_[k].start = shot.start;
+        windows_[k].start = found_[k];
       }
     });
     last_ = params;
@@ -131,7 +131,10 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // The best initial states at `params` become where later searches begin.
   void settle(const Machine<double>& params) {
     followed_.clear();
-    in_parallel([&](std::size_t k) { windows_[k].start = found_[k] = search(params, windows_[k]).start; });
+    in_parallel([&](std::size_t k) {
+      const Window& w = windows_[k];
+      windows_[k].start = found_[k] = place_of(search(params, w), w);
+    });
     last_ = params;
   }
 
@@ -213,6 +216,11 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     }
   }
 
+  // Where searches go on from: the state that was found, or the guess where the simulation ran away from it.
+  Eigen::VectorXd place_of(const Shot& shot, const Window& w) const {
+    return shot.start.allFinite() && shot.residual.allFinite() ? shot.start : plant_.guess(w.record, w.first);
+  }
+
   // Window k with where its search begins.
   Window begun(const Machine<double>& params, std::size_t k) const {
     Window w = windows_[k];
@@ -228,6 +236,9 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
     for (int i = 0; i < kStart; ++i) {
       const double most = Plant::start_scale(i), here = windows_[k].start[i];
       w.start[i] = std::min(std::max(w.start[i], here - most), here + most);
+    }
+    if (!w.start.allFinite()) {
+      w.start = plant_.guess(w.record, w.first);
     }
     return w;
   }

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "estimation/tank_plant.hpp"
 
@@ -153,6 +155,24 @@ TEST_CASE("tank: a record of the model itself leaves nothing") {
   problem.evaluate(sms::Params<double>(), {}, &without, nullptr);
   CHECK(with.cwiseAbs().maxCoeff() < 0.3);
   CHECK(without.norm() > 50.0);
+}
+
+TEST_CASE("tank: after parameters beyond numbers a search begins where it began before") {
+  const sms::Params<double> p;
+  const est::TankPlant plant({record_of(simulated(p, 300))}, {100.0, 1.0, 100.0}, sms::published_laws(), 1e-3);
+  est::ShootingProblem<est::TankPlant> problem(plant, {});
+  Eigen::VectorXd residual;
+  est::RowMatrix jacobian;
+  const std::vector<int> free = {sms::index_of_tank_volume};
+  sms::Params<double> broken = p;
+  broken.tank_volume = std::numeric_limits<double>::quiet_NaN();
+  problem.evaluate(broken, free, &residual, &jacobian);
+  CHECK_FALSE(residual.allFinite());
+  problem.evaluate(p, free, &residual, nullptr);
+  CHECK(residual.norm() < 5.0);
+  problem.evaluate(p, free, &residual, &jacobian);
+  CHECK(residual.norm() < 5.0);
+  CHECK(jacobian.allFinite());
 }
 
 TEST_CASE("tank: what cannot be a record is refused") {
