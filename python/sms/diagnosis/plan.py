@@ -45,14 +45,28 @@ def plan_next(
             "Tell the explanations apart", rivals[0].separated_by, tuple(e.id for e in rivals)
         )
     if verdict == "unknown":
-        signal = hidden.shape.signal.split(" [")[0].replace("_", " ")
+        return _for_unknown(hidden)
+    return None
+
+
+def _for_unknown(hidden: Hidden) -> NextExperiment:
+    """What would show more of a term that has no name."""
+    signal, equation = (
+        s.split(" [")[0].replace("_", " ") for s in (hidden.shape.signal, hidden.equation)
+    )
+    again = "repeat it once, so that chance can be told from a cause"
+    if signal == "time":
         return NextExperiment(
-            f"A run that moves {signal} alone",
-            f"shows whether the missing term in {hidden.equation.replace('_', ' ')} follows {signal} or something that "
-            "moved with it; repeat it once, so that chance can be told from a cause.",
+            "The machine at rest, for as long as a run",
+            f"no signal of these records brings the missing term in {equation}: at rest it shows whether it comes with "
+            f"time, from outside, or with the motion; {again}.",
             (),
         )
-    return None
+    return NextExperiment(
+        f"A run that moves {signal} alone",
+        f"shows whether the missing term in {equation} follows {signal} or something that moved with it; {again}.",
+        (),
+    )
 
 
 def best_of_menu(
