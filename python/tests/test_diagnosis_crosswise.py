@@ -15,6 +15,7 @@ from sms.diagnosis.catalogue import catalogue
 from sms.diagnosis.crosswise import predicted
 from sms.diagnosis.gauss_newton import WindowFit
 from sms.diagnosis.hypothesis import Fitted, Hypothesis
+from sms.diagnosis.report import report_html
 
 from validation.random_cases import draw
 
@@ -65,6 +66,10 @@ def test_friction_at_high_speed_is_named_from_the_fitted_records_alone_and_said_
     assert found.value == pytest.approx(2.0, abs=max(3.0 * found.standard_error, 0.1))
     said = [text for text in answer.conclusion if "kept aside do not feel it" in text]
     assert len(said) == 1
+    assert answer.next_experiment is not None
+    assert 'role = "validate"' in answer.next_experiment.title
+    assert "more than 0.2 m/s" in answer.next_experiment.purpose
+    assert "do not feel it" in report_html(answer)
     assert not any("the error within a window falls" in text for text in answer.conclusion)
 
 

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from sms.diagnosis.result import Cause, Diagnosis, Gain, ParameterValue, Remainder
-from sms.diagnosis.words import arranged
+from sms.diagnosis.words import NOT_FELT, arranged
 from sms.report.verdict import VERDICT_WORDS, is_shift, parameter_text
 from sms.units_display import (
     capital,
@@ -88,6 +88,8 @@ def _causes(diagnosis: Diagnosis) -> Padding | None:
             )
         if len(cause.alternatives) > 0:
             table.add_row("", Text("cannot be told apart by these signals", style="dim italic"), "")
+        if cause.crosswise:
+            table.add_row("", Text(NOT_FELT, style="dim italic"), "")
     return _block(table)
 
 

@@ -23,9 +23,17 @@ from sms.diagnosis.screening import columns_of, nuisance_at, project
 
 
 def plan_next(
-    verdict: Verdict, classes: Sequence[Sequence[Effect]], final: Fitted, data: Data, hidden: Hidden
+    verdict: Verdict,
+    classes: Sequence[Sequence[Effect]],
+    final: Fitted,
+    data: Data,
+    hidden: Hidden,
+    unfelt: Sequence[Effect] = (),
 ) -> NextExperiment | None:
-    """The measurement that would tell most; None when there is nothing to tell apart."""
+    """The measurement that would tell most; None when there is nothing to tell apart.
+
+    unfelt: causes that the records kept aside do not feel.
+    """
     rivals = next((list(c) for c in classes if len(c) > 1), [])
     if rivals:
         found = best_of_menu(rivals, final, data)
@@ -46,6 +54,15 @@ def plan_next(
         )
     if verdict == "unknown":
         return _for_unknown(hidden)
+    if unfelt:
+        effect = unfelt[0]
+        return NextExperiment(
+            'A record that feels it, kept aside with role = "validate"',
+            f"those of today do not feel {effect.title}, so that the fitted ones alone speak for it. What shows it: "
+            + effect.separated_by[:1].lower()
+            + effect.separated_by[1:],
+            (),
+        )
     return None
 
 

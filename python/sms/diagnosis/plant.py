@@ -224,6 +224,7 @@ def complete(
         curve = empirical_of(baseline, data, hidden.shape, case.before.floor, rng)
     progress("choosing the next experiment", 0.9)
     classes = [[m.effect for m in members] for members in case.outcome.classes]
+    unfelt = [members[0].effect for members in case.outcome.classes if members[0].crosswise]
     start = baseline.hypothesis.start
     answer = replace(
         blank,
@@ -240,7 +241,7 @@ def complete(
         empirical=curve,
         noise_floor={},
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
-        next_experiment=plan_next(case.verdict, classes, final, data, hidden),
+        next_experiment=plan_next(case.verdict, classes, final, data, hidden, unfelt),
         series=_all_series(case),
     )
     return _with_words(answer, case, hidden)

@@ -153,12 +153,15 @@ def conclusion(
     return tuple(out)
 
 
+NOT_FELT = (
+    "the records kept aside do not feel it; it is judged by the fitted ones, each part of them predicted with the size "
+    "that the rest asks for"
+)
+
+
 def judged_crosswise(cause: Cause) -> str:
     """What to say of a cause that the records kept aside cannot judge."""
-    return (
-        f"{capital(cause.title)}: the records kept aside do not feel it. It is judged by the fitted ones, each part of "
-        "them predicted with the size that the rest asks for; a record that feels it would be a better judge."
-    )
+    return f"{capital(cause.title)}: {NOT_FELT}; a record that feels it would be a better judge."
 
 
 def chosen_again(causes: Sequence[Cause], unit: str) -> str:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 
 from sms.diagnosis.result import Cause, Diagnosis, Member, ParameterValue, Verdict
+from sms.diagnosis.words import NOT_FELT
 from sms.report.markup import Scale, dot, effect_label, empty, esc, paragraphs, section, table
 from sms.units_display import (
     capital,
@@ -132,6 +133,8 @@ def _card(number: int, cause: Cause, diagnosis: Diagnosis) -> str:
         f"{_amounts(cause)}{paragraphs([cause.explanation])}"
     )
     note = f'<p class="small"><code>{esc(identifier)}</code> · {_significance(cause)}</p>'
+    if cause.crosswise:
+        about += paragraphs([f"{capital(NOT_FELT)}."])
     evidence = _consistency(cause, diagnosis.records) + _against(cause, diagnosis)
     columns = (about + evidence + note, _members(cause)) if several else (about + note, evidence)
     body = "".join(f"<div>{column}</div>" for column in columns)
