@@ -249,11 +249,11 @@ def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
     # A process is one core: new ones read this when they load their linear algebra, forked ones have it loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        jobs = {pool.submit(run_task, task): task for task in missing}
-        for job in as_completed(jobs):
+        pending = {pool.submit(run_task, task): task for task in missing}
+        for job in as_completed(pending):
             if (fault := job.exception()) is not None:
                 pool.shutdown(wait=False, cancel_futures=True)
-                task = jobs[job]
+                task = pending[job]
                 raise RuntimeError(
                     f"trial {task.sort} of {task.kind}, seed {task.seed}, broke down; those that are done are kept"
                 ) from fault
