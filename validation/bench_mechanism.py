@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import scipy.optimize
 import sms
-from sms.rows import Array
+from sms.arrays import Array
 
 from validation.timing import Goal, Row, fastest, row
 

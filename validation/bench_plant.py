@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import sms
-from sms.rows import Array
+from sms.arrays import Array
 from sms.simulation import PLATFORM_TOLERANCE, extensions_of, simulate_platform
 
 from validation.bench_simulators import ask, python_with

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import sms
-from sms.rows import Array
+from sms.arrays import Array
 
 from validation.multibody.environment import FOLDER, ROOT, PeersUnavailableError, peer_python
 from validation.multibody.mechanism import mechanism_of

@@ -15,9 +15,10 @@ from pathlib import Path
 
 from rich.console import Console
 from sms.diagnosis import Diagnosis, diagnose
-from sms.diagnosis.console import print_diagnosis
-from sms.diagnosis.files import check_output_folder, write_diagnosis
 from sms.io.errors import InputError
+from sms.io.write import check_output_folder
+from sms.report.console import print_diagnosis
+from sms.report.files import write_diagnosis
 
 from validation.hidden_effects import effects
 from validation.hidden_effects.draw import draw, open_truth

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 from sms.diagnosis import diagnose
-from sms.diagnosis.report import report_html
+from sms.report.diagnosis import report_html
 
 ROOT = Path(__file__).parents[1]
 PICTURE = ROOT / "docs" / "report.png"

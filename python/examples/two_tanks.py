@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from sms.arrays import Array
 from sms.diagnosis import Diagnosis, own
-from sms.diagnosis.result import Array
 
 GRAVITY = 9.81
 """m/s^2"""

@@ -6,7 +6,8 @@ from numpy.typing import ArrayLike
 
 from sms import _core
 from sms._core import Params
-from sms.rows import Array, Rows, scalars
+from sms.arrays import Array
+from sms.rows import Rows, scalars
 
 
 def friction(

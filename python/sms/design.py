@@ -19,10 +19,10 @@ from numpy.typing import ArrayLike
 
 from sms import _core
 from sms._core import Params
+from sms.arrays import Array
 from sms.dynamics import holding_force, linearise
 from sms.io.errors import InputError
 from sms.motion.speed import steady_motion
-from sms.rows import Array
 
 MEAN_PRESSURE = 333.5e3
 """Pa, half the sum of the published chamber pressures, 281 and 386 kPa; Table D.1 prints the sum."""

@@ -23,8 +23,9 @@ from numpy.typing import ArrayLike
 
 from sms import _core
 from sms._core import Params
+from sms.arrays import Array
 from sms.kinematics import QDDOT, QDOT, Q, allowed_poses
-from sms.rows import Array, Rows, vectors
+from sms.rows import Rows, vectors
 
 FORCE = tuple((f"force {i}", "N") for i in (1, 2, 3))
 _EXTERNAL_FORCE = tuple((f"external force {axis}", "N") for axis in "xyz")

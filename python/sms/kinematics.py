@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sms import _core
 from sms._core import Params
-from sms.rows import Array, Rows, scalars, vectors
+from sms.arrays import Array
+from sms.rows import Rows, scalars, vectors
 
 Q = (("roll", "rad"), ("pitch", "rad"), ("height", "m"))
 QDOT = (("roll rate", "rad/s"), ("pitch rate", "rad/s"), ("height rate", "m/s"))

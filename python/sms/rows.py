@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from sms import _core
 from sms._core import NotANumberError, Params
+from sms.arrays import Array
 
 Number = TypeVar("Number", np.float64, np.int32)
-Array = NDArray[np.float64]
-"""An array of numbers; for a single pose a field without an axis of its own is a numpy.float64."""
 
 
 @dataclass(frozen=True)

@@ -16,14 +16,14 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from sms import _core
 from sms._core import Params
+from sms.arrays import Array
 from sms.dynamics import mass_model_number
 from sms.kinematics import inverse_kinematics
 
-Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 """Called with the part of the run that is done, 0 to 1, every 0.25 s of simulated time."""
 

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 
 from sms import _core
 from sms._core import Params
+from sms.arrays import Array
 from sms.dynamics import inverse_dynamics
 from sms.kinematics import Q, allowed_poses, height_range, poses
-from sms.rows import Array, scalars, vectors, without_axes
+from sms.rows import scalars, vectors, without_axes
 
 
 @dataclass(frozen=True, slots=True)

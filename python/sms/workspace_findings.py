@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sms.rows import Array
+from sms.arrays import Array
 from sms.workspace_survey import ACCELERATION, DEGREE, Box, Fit, Survey, Worst
 
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from sms import _core
 from sms._core import OutOfWorkspaceError, Params
+from sms.arrays import Array
 from sms.kinematics import forward_kinematics, height_range
-from sms.rows import Array
 from sms.workspace import conditioning, force_share, joint_angles, reach, rectangle_margin
 
 DEGREE = math.pi / 180.0

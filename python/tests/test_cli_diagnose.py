@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_diagnosis_method import make_rig
+from test_diagnosis_cylinder import make_rig
 
 
 def sms(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:

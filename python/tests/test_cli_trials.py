@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from sms.cli import app
-from sms.cli_trials import _checkout
+from sms.cli.trials import _checkout
 from sms.io import InputError
 from typer.testing import CliRunner
 

@@ -11,20 +11,20 @@ from plant_support import write_bench, write_platform
 from rich.console import Console
 from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
-from sms.diagnosis.catalogue import effects_of
-from sms.diagnosis.console import print_diagnosis
-from sms.diagnosis.kind import Run
-from sms.diagnosis.kind_bench import MENU
-from sms.diagnosis.kind_platform import MENU as PLATFORM_MENU
-from sms.diagnosis.kind_platform import PLATFORM
-from sms.diagnosis.kind_platform_loop import COMMANDS, PLATFORM_LOOP, PLATFORM_LOOP_BLIND
-from sms.diagnosis.kinds import kind_of
-from sms.diagnosis.plant import make_data
-from sms.diagnosis.report import report_html
-from sms.diagnosis.words import of_command
+from sms.diagnosis.effects.catalogue import effects_of
+from sms.diagnosis.simulated import make_data
+from sms.estimation.run import Run
 from sms.io import InputError, load_rig
 from sms.io.records import load_record
 from sms.io.signals import of_legs
+from sms.report.console import print_diagnosis
+from sms.report.diagnosis import report_html
+from sms.report.wording import of_command
+from sms.rigs.bench import MENU
+from sms.rigs.kinds import kind_of
+from sms.rigs.platform import MENU as PLATFORM_MENU
+from sms.rigs.platform import PLATFORM
+from sms.rigs.platform_loop import COMMANDS, PLATFORM_LOOP, PLATFORM_LOOP_BLIND
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 

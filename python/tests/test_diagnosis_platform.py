@@ -9,8 +9,8 @@ import pytest
 from plant_support import write_platform
 from sms import _core
 from sms.diagnosis import diagnose
-from sms.diagnosis.catalogue import catalogue
-from sms.diagnosis.localise import alike, alike_signals, belong_together
+from sms.diagnosis.effects.catalogue import catalogue
+from sms.diagnosis.localisation.unknown_inputs import alike, alike_signals, belong_together
 from sms.parameters import LEG_PARAMETERS, PARAMETERS
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")

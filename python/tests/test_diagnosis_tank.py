@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from sms import Params, _core, simulate_tank
 from sms.diagnosis import diagnose
-from sms.diagnosis.kinds import KINDS
 from sms.io import write_record
 from sms.io.rig import load_rig
+from sms.rigs.kinds import KINDS
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 

@@ -11,16 +11,16 @@ import pytest
 from numpy.typing import NDArray
 from plant_support import NOISE, pose, setpoint, write_bench
 from sms import Params, _core, extensions_of, simulate_bench, simulate_platform, simulate_tank
-from sms.diagnosis.catalogue import effects_of
-from sms.diagnosis.equation_error import fed_equations, feed, smoothed
+from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import baseline_hypothesis, fit
-from sms.diagnosis.kind_bench import EQUATIONS
-from sms.diagnosis.method import read_and_check
-from sms.diagnosis.plant import make_data
-from sms.diagnosis.plant_words import agree, two_ways
+from sms.diagnosis.localisation.equation_error import fed_equations, feed, smoothed
+from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.result import EquationError, FedEquations, Hidden, Shape
+from sms.diagnosis.simulated import make_data
 from sms.io import load_rig
 from sms.report.origin import _fed
+from sms.report.wording_simulated import agree, two_ways
+from sms.rigs.bench import EQUATIONS
 
 from validation.random_cases import draw
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from sms.identification.colour import Colour, colour_of, coloured_meat
+from sms.estimation.coloured_noise import Colour, colour_of, coloured_meat
 from sms.identification.estimate import Free, estimate
 from sms.identification.flow import FlowFit, fit_record
 from sms.identification.flow_map import valve_map

@@ -8,15 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sms
-from mechanism_support import (
-    ROOT,
-    Array,
-    column,
-    difference,
-    driven,
-    random_poses,
-    with_reference,
-)
+from mechanism_support import ROOT, Array, column, difference, driven, random_poses, with_reference
 
 from validation.random_cases import draw
 

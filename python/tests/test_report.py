@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from report_support import VERDICTS, cylinder_series, diagnosis, emptied, without_numbers
 from rich.console import Console
-from sms.diagnosis.console import print_diagnosis
-from sms.diagnosis.report import report_html
 from sms.diagnosis.result import Diagnosis, Verdict
+from sms.report.console import print_diagnosis
 from sms.report.curves import LINE_POINTS, payload, thin
+from sms.report.diagnosis import report_html
 from sms.report.verdict import VERDICT_WORDS
 
 LARGEST_PAGE = 8.5e6  # bytes

@@ -9,13 +9,7 @@ import numpy as np
 import pytest
 import sms
 from sms import inverse_dynamics, inverse_motion
-from sms.requirements import (
-    SPECIFIED,
-    Compliance,
-    Row,
-    best_height,
-    compliance,
-)
+from sms.requirements import SPECIFIED, Compliance, Row, best_height, compliance
 from sms.workspace_survey import DEGREE
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sms.arrays import Array
 from sms.cli import main
 from sms.motion.excitation import sine
 from sms.report.validation import validation_html
-from sms.rows import Array
 from sms.scenario import Record
 from sms.validation import EXPERIMENTS, FIGURES, Row, rows_to_json, validate
 from sms.validation.open_loop import rise_time

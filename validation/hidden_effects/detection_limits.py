@@ -20,13 +20,14 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
-from sms.diagnosis.catalogue import effects_of
-from sms.diagnosis.kinds import KINDS
-from sms.diagnosis.limits import limits_of
-from sms.diagnosis.method import read_and_check
-from sms.diagnosis.runs import make_run, noise_of
-from sms.diagnosis.visible import DETECTION
+from sms.diagnosis.design.detection_limits import limits_of
+from sms.diagnosis.effects.catalogue import effects_of
+from sms.diagnosis.pipeline import read_and_check
+from sms.diagnosis.thresholds import DETECTION
+from sms.estimation.noise import noise_of
+from sms.estimation.run import make_run
 from sms.io.rig import load_rig
+from sms.rigs.kinds import KINDS
 from sms.units_display import display_unit, significant
 
 from validation.hidden_effects.machines import effects, limits

@@ -19,14 +19,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sms.cli_trials import trial_of_worker
+from sms.cli.trials import trial_of_worker
 from sms.cluster import client_of
-from sms.diagnosis.catalogue import Effect, effects_of
-from sms.diagnosis.excess import Excess, excess_of
+from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
+from sms.diagnosis.adequacy.subset_estimates import found_value
+from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.hypothesis import fit
-from sms.diagnosis.method import read_and_check
-from sms.diagnosis.plant import Case, investigate, make_data
-from sms.diagnosis.size import found_value
+from sms.diagnosis.pipeline import read_and_check
+from sms.diagnosis.simulated import Case, investigate, make_data
 from sms.io.rig import load_rig
 
 from validation.hidden_effects.machines import effects
@@ -130,7 +130,7 @@ def outcome_of(task: Task, answer: Answered, truth: dict[str, Any]) -> Outcome:
         hidden,
         [float(e["value"]) for e in truth["effects"]],
         case.verdict,
-        [[key_of(m.effect) for m in members] for members in case.outcome.classes],
+        [[key_of(m.effect) for m in members] for members in case.outcome.groups],
         _estimates(case, truth["effects"]),
         answer.block,
         taken(case, case.after),
@@ -143,7 +143,7 @@ def _estimates(case: Case, hidden: Sequence[dict[str, Any]]) -> list[tuple[float
     """Value and standard error of what was hidden, where it was named."""
     rig = case.data.rig
     found = {}
-    for members in case.outcome.classes:
+    for members in case.outcome.groups:
         for m in members:
             at = case.outcome.final if m is members[0] else m.fitted
             found[key_of(m.effect)] = found_value(at, m.effect, case.data)
@@ -160,7 +160,7 @@ def _estimates(case: Case, hidden: Sequence[dict[str, Any]]) -> list[tuple[float
 # ---- gain ------------------------------------------------------------
 
 
-def taken(case: Case, after: Excess) -> float:
+def taken(case: Case, after: LackOfFit) -> float:
     """Part of the baseline's excess on the unseen records that a model takes."""
     before = float(np.mean(case.before.validate))
     return 1.0 - max(float(np.mean(after.validate)), 0.0) / max(before, 1e-9)
@@ -175,19 +175,19 @@ def achievable(case: Case, hidden: Sequence[str]) -> float | None:
     effects = {key_of(e): e for e in effects_of(case.data.rig)}
     if not all(key in effects for key in hidden):
         return None
-    classes = case.outcome.classes
+    classes = case.outcome.groups
     if sorted(key_of(c[0].effect) for c in classes) == sorted(hidden):
         return taken(case, case.after)
     alone = [m for c in classes for m in c if key_of(m.effect) == hidden[0]]
     if len(classes) == len(hidden) == len(alone) == 1:
-        return taken(case, excess_of(alone[0].fitted, case.data))
+        return taken(case, lack_of_fit(alone[0].fitted, case.data))
     hypothesis = case.baseline.hypothesis
     start = case.baseline.params.copy()
     for key in hidden:
         hypothesis = hypothesis.with_effect(effects[key])
         if (step := effects[key].step) is not None:  # without a slope at its neutral value
             start[effects[key].parameters[0]] = step
-    return taken(case, excess_of(fit(hypothesis, case.data.identify, start), case.data))
+    return taken(case, lack_of_fit(fit(hypothesis, case.data.identify, start), case.data))
 
 
 # ---- many ------------------------------------------------------------

@@ -14,7 +14,7 @@ import numpy as np
 import sms
 from scipy.integrate import solve_ivp
 from sms import Params
-from sms.rows import Array
+from sms.arrays import Array
 
 from validation.multibody.environment import ROOT, peer_python
 from validation.multibody.peers.exchange import Answer, Motion, Request

@@ -14,7 +14,7 @@ from validation.multibody.peers.exchange import GROUND, PLATFORM, Body, Joint, M
 
 if TYPE_CHECKING:  # the list serves simulators too that share nothing with the core
     from sms import Params
-    from sms.rows import Array
+    from sms.arrays import Array
 
 COUNT = 3  # actuators, and Panhard rods
 DESIGN_TURN = np.radians([0.0, -120.0, 120.0])  # of actuators 1 to 3 about z, against the first

@@ -12,14 +12,7 @@ from sms import Params
 
 from validation.compiled import compiled
 from validation.plants.actuator import CHAMBER_LAWS, VALVE_LAWS, Laws, border, gas_rates
-from validation.plants.flow import (
-    Array,
-    edge_flow,
-    open_edges,
-    opening_of,
-    orifice_area,
-    valve_map,
-)
+from validation.plants.flow import Array, edge_flow, open_edges, opening_of, orifice_area, valve_map
 from validation.plants.numbers import Numbers, numbers_of
 from validation.plants.trajectory import TOLERANCE, Method, follow
 

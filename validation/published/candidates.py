@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from sms._core import Params
-from sms.rows import Array
+from sms.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from math import atan, exp, pi
 
 import numpy as np
 from sms import Params
-from sms.rows import Array
+from sms.arrays import Array
 
 from validation.compiled import compiled
 from validation.plants.actuator import P_LOWER, P_UPPER, Laws, air_rates, rod_drive

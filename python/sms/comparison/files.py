@@ -10,16 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from sms.comparison.metrics import (
-    FrequencyResponse,
-    Metrics,
-    compare_signals,
-    frequency_response,
-)
+from sms.arrays import Array
+from sms.comparison.metrics import FrequencyResponse, Metrics, compare_signals, frequency_response
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Table, read_table
 from sms.io.units import array_to_si, si_unit_of, split_column_name
-from sms.rows import Array
 
 WARNING = (
     "The correlation (eq. 7.2) is blind to gain and offset: a simulation of half the amplitude "

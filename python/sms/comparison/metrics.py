@@ -15,7 +15,7 @@ import numpy as np
 from scipy.signal import coherence as coherence_of
 from scipy.signal import correlate, csd, detrend, welch
 
-from sms.rows import Array
+from sms.arrays import Array
 
 _SWING = 0.4  # of the whole range: a smaller turn is no flank
 _LONGEST_LAG = 0.25  # of the record

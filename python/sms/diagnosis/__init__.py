@@ -1,22 +1,20 @@
-"""What a simulation gets wrong, and why: the method, step by step.
+"""What a simulation gets wrong, and why.
 
-prepare     the measured records as the core's problem: motion derived, strokes found
-catalogue   the effects that can be named (catalogue.toml)
-statistics  judgements that respect coloured residuals: strokes are the unit, not samples
-kind, kinds     what the method asks of a kind of rig that is simulated, and the kinds there are (kind_bench.py, ...)
-repeatability   what repeats, what drifts, and the noise floor
-hypothesis  which parameters may move, and their fit; visible: which effects can be seen at all
-search, judgement   one round: screening and fits, then held-out judgement and classes
-afar        effects that are far from where the model stands
-crosswise   judgement of an effect that the records kept aside do not feel
-rounds      rounds until nothing more is found, and the verdict
-evidence    sizes with honest errors, gains, what is left
-method      the whole method, from a rig file to a Diagnosis (result.py)
-own         the same for a plant of one's own, written in Python
-report, console   the answer for people
+pipeline         the steps, from a rig file to a Diagnosis (result.py)
+simulated        the same steps for the rigs that are simulated against their records
+hypothesis       which parameters may move, and their fit
+evidence         sizes with their standard errors, prediction gains, what is left
+related_rigs     the causes of one rig followed to its relatives
+thresholds       every tuning constant, with its origin
+effects/         the effects that can be named
+selection/       which of them enter the model
+adequacy/        whether the extended model is adequate, and the verdict
+localisation/    which equation an error comes from
+design/          detection limits, the next experiment, what a cause means in closed loop
+own/             the same for a model of one's own, written in Python
 """
 
-from sms.diagnosis.method import diagnose
+from sms.diagnosis.pipeline import diagnose
 from sms.diagnosis.result import Diagnosis
 
 __all__ = ["Diagnosis", "diagnose"]

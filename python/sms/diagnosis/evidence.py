@@ -7,24 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sms.arrays import Array, Index
+from sms.diagnosis.adequacy.repeatability import Repeatability, arrangement
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
-from sms.diagnosis.prepare import Comparison, Motion, inputs_of, predict
-from sms.diagnosis.repeatability import Repeatability, arrangement
-from sms.diagnosis.result import (
-    Array,
-    Candidate,
-    Cause,
-    Gain,
-    Member,
-    ParameterValue,
-    Remainder,
-    Series,
-)
-from sms.diagnosis.ripple import find_ripple
-from sms.diagnosis.rounds import Outcome, Round
-from sms.diagnosis.runs import Runs
-from sms.diagnosis.search import Trial
-from sms.diagnosis.statistics import Index, interval, resampled, weighted_ms
+from sms.diagnosis.localisation.ripple import find_ripple
+from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Remainder, Series
+from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.forward_selection import Outcome, Round
+from sms.estimation.block_statistics import interval, resampled, weighted_ms
+from sms.estimation.windows import Runs
+from sms.rigs.cylinder import Comparison, Motion, inputs_of, predict
 
 
 def value_of(fitted: Fitted, name: str, old: float, error: float | None = None) -> ParameterValue:
@@ -50,7 +42,7 @@ def instead(
 ) -> Fitted:
     """The final model with another member of one class in the place of the one that stands for it."""
     hypothesis = baseline.hypothesis
-    for chosen in outcome.classes:
+    for chosen in outcome.groups:
         effect = other.effect if chosen is members else chosen[0].effect
         hypothesis = hypothesis.with_effect(effect)
     return fit(hypothesis, data.identify)
@@ -100,7 +92,7 @@ def cause_from(
         if len(members) > 1
         else "",
         support=sum(m.support for m in members),
-        crosswise=first.crosswise,
+        crosswise=first.cross_validated,
     )
 
 

@@ -12,15 +12,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.catalogue import Effect
-from sms.diagnosis.gauss_newton import Free, Solution, changed, fit_windows
-from sms.diagnosis.prepare import Comparison
-from sms.diagnosis.result import Array
-from sms.diagnosis.runs import Runs
-from sms.diagnosis.screening import Nuisance, pulls
-from sms.diagnosis.statistics import covariance_of, project_off
+from sms.arrays import Array
+from sms.diagnosis.effects.catalogue import Effect
+from sms.estimation.block_statistics import covariance_of, project_off
+from sms.estimation.least_squares import Free, Solution, changed, fit_windows
+from sms.estimation.nuisance import Nuisance, pulls
+from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import PARAMETERS, Parameter
+from sms.rigs.cylinder import Comparison
 
 ALWAYS_UNCERTAIN = ("stiction_shape",)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
@@ -207,7 +207,7 @@ def refitted_on(fitted: Fitted, comparison: Comparison | Runs) -> Fitted:
     return fit(replace(h, start=start, free=free, known=known), comparison, fitted.params)
 
 
-def footprints(fitted: Fitted, comparison: Comparison | Runs, names: list[str]) -> Array:
+def sensitivities(fitted: Fitted, comparison: Comparison | Runs, names: list[str]) -> Array:
     """(rows, names): how the residual changes with each parameter, beyond what the free ones can undo."""
     nuisance = [n for n in fitted.movable if n not in names]
     _, jacobian = comparison.problem.evaluate(fitted.params, nuisance + names)

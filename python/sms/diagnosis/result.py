@@ -10,7 +10,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sms.arrays import Array
+
 Verdict = Literal["no-evidence", "cause", "class", "combination", "unknown", "data-fault"]
 
 
@@ -34,7 +35,7 @@ class Member:
     title: str
     parameters: tuple[ParameterValue, ...]
     similarity: float
-    """Cosine between this member's and the class's first member's footprint in the data, 0..1."""
+    """Cosine between this member's and the class's first member's sensitivity in the data, 0..1."""
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ not be known better than before. After the fit the same is asked with the residu
 within limits beside the machine, pressures, temperature, the spool's lag, is fitted within these limits as a
 rectangle's standard deviation, so that their doubt is part of every error.
 
-Errors: least squares with the residual's own colour, one memory a signal (colour.py); where the records, each taken
-alone, scatter by more than that, all errors grow by the Birge ratio, sqrt(chi-square / degrees of freedom), as is
-usual for means of measurements that disagree.
+Errors: least squares with the residual's own colour, one memory a signal (estimation/coloured_noise.py); where the
+records, each taken alone, scatter by more than that, all errors grow by the Birge ratio, sqrt(chi-square / degrees of
+freedom), as is usual for means of measurements that disagree.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.identification.bench_gain import ChannelGain, gains
 from sms.identification.bench_records import BenchRecords
 from sms.identification.bench_scatter import birge_ratio, record_by_record

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.runs import Runs
-from sms.diagnosis.statistics import interval, resampled, weighted_ms
+from sms.estimation.block_statistics import interval, resampled, weighted_ms
+from sms.estimation.windows import Runs
 from sms.identification.bench_records import whole_windows
 
 

@@ -1,7 +1,7 @@
 """Records of the moving actuator: what they are before a fit, and what they prevent.
 
-A record is used in windows (diagnosis/runs.py), each simulated from an initial state of its own. A window in which a
-sensor is clipped counts for nothing; what a whole record cannot show is said, with what it still can.
+A record is used in windows (estimation/windows.py), each simulated from an initial state of its own. A window in which
+a sensor is clipped counts for nothing; what a whole record cannot show is said, with what it still can.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms import _core
-from sms.diagnosis.kind import Run
-from sms.diagnosis.kinds import KINDS
-from sms.diagnosis.result import Array
-from sms.diagnosis.runs import Runs, make_run, noise_of
+from sms.arrays import Array
+from sms.estimation.noise import noise_of
+from sms.estimation.run import Run, make_run
+from sms.estimation.windows import Runs
 from sms.io.check import check_record
 from sms.io.errors import InputError
 from sms.io.records import Finding, load_record
 from sms.io.rig import Rig, load_rig
+from sms.rigs.kinds import KINDS
 
 MOVES = 1e-3  #: m, of travel that tells a piston that moves from one that creeps
 STIRS = 2e4  #: Pa, of change in a chamber that tells a valve that opens from one that leaks

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sms.diagnosis.result import Array
-from sms.diagnosis.runs import Runs
+from sms.arrays import Array
+from sms.estimation.coloured_noise import coloured_meat
+from sms.estimation.windows import Runs
 from sms.identification.bench_told import size_of
-from sms.identification.colour import coloured_meat
 from sms.identification.estimate import Estimate
 from sms.io.rig import Rig
 

@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.result import Array
-from sms.diagnosis.runs import Runs
+from sms.arrays import Array
+from sms.estimation.windows import Runs
 from sms.identification.estimate import Estimate, Free
 from sms.io.rig import Rig
 from sms.parameters import PARAMETERS

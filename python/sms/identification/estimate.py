@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from sms import _core
-from sms.diagnosis.result import Array
-from sms.identification.colour import Colour, colour_of, coloured_meat
+from sms.arrays import Array
+from sms.estimation.coloured_noise import Colour, colour_of, coloured_meat
 from sms.parameters import PARAMETERS
 
 BAD_CONDITION = 1e4

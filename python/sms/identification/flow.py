@@ -17,13 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms import _core
-from sms.diagnosis.result import Array
-from sms.identification.estimate import (
-    Estimate,
-    Free,
-    estimate,
-    with_start,
-)
+from sms.arrays import Array
+from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.identification.flow_known import Contribution, Known, budget_of, known_of
 from sms.identification.flow_problem import (
     COMPONENT,

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import isotonic_regression
 
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.identification.flow import FlowFit
 from sms.identification.flow_problem import COMPONENT
 from sms.identification.flow_record import FlowRecord

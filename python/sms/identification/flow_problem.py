@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms import _core
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.identification.estimate import Free, with_start
 from sms.identification.flow_record import FlowRecord, Look, smooth_supply
 from sms.io.rig import Declaration

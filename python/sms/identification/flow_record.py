@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 
 FULL = 0.98  #: of the way to equal pressures: from there on the whole subsonic branch was seen
 MOVES = 8.0  #: times the noise that a pressure must change by to say anything

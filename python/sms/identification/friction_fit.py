@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from sms import _core
-from sms.diagnosis.prepare import Comparison, Motion
-from sms.diagnosis.result import Array
-from sms.diagnosis.statistics import covariance_of, strokes_per_block
+from sms.arrays import Array
+from sms.estimation.block_statistics import covariance_of, strokes_per_block
 from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.parameters import PARAMETERS
+from sms.rigs.cylinder import Comparison, Motion
 
 COLLINEAR = 10.0
 """Collinearity index beyond which a parameter only repeats others (Brun et al.: 5 to 20)."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from sms import _core
+from sms.arrays import Array
 from sms.cylinder import friction as friction_force
-from sms.diagnosis.prepare import Motion
-from sms.diagnosis.result import Array
 from sms.identification.friction_fit import LawFit, problem_of
+from sms.rigs.cylinder import Motion
 
 
 def friction_map(motion: Motion, params: _core.Params) -> Array:

@@ -15,7 +15,7 @@ import scipy.signal
 import scipy.stats
 
 from sms import _core
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.io.errors import InputError
 
 SHORTEST = 64

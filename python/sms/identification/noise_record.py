@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.identification.noise import Noise, Spectrum
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import read_table

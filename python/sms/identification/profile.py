@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.identification.estimate import LIMIT_95, Estimate
 
 _REFITS = 14  # a side of a profile

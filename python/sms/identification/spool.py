@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.identification.actuator import BenchResult, wanted_of
 from sms.identification.bench_fit import Progress, fit_bench, start_params
 from sms.identification.bench_records import load_bench

@@ -10,9 +10,10 @@ import numpy as np
 from cantools.database.can import Message, Signal
 from numpy.typing import NDArray
 
+from sms.arrays import Array
+
 Octets = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
-Array = NDArray[np.float64]
 
 _FLOATS = {16: np.float16, 32: np.float32, 64: np.float64}
 _WORDS = {16: np.uint16, 32: np.uint32, 64: np.uint64}

@@ -13,7 +13,8 @@ from cantools.database.can import Database, Message, Signal
 from numpy.typing import NDArray
 
 from sms import _core
-from sms.io.can_decode import Array, Payloads
+from sms.arrays import Array
+from sms.io.can_decode import Payloads
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Remark
 from sms.io.units import split_column_name

@@ -28,6 +28,7 @@ import pandas as pd
 from cantools.database.can import Database, Message, Signal
 from numpy.typing import NDArray
 
+from sms.arrays import Array
 from sms.io.can_frames import (
     CLOCK,
     TIME,
@@ -44,8 +45,6 @@ from sms.io.tables import Remark, Table
 TELEMETRY = "Controller"  #: who sends the telemetry of the project's own bus
 GAP = 5.0  #: times the usual interval of a message
 CLOCK_JUMP = 1.0  #: s between the sender's clock and the logger's
-
-Array = NDArray[np.float64]
 
 
 def read_can_log(file: Path, database: Database, wanted: Mapping[str, bool]) -> Table:

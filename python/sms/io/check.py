@@ -13,14 +13,13 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from sms.arrays import Array
 from sms.io import check_plant
 from sms.io.errors import InputError
 from sms.io.plausible import extension_range, force_against_pressure, pressure_range
 from sms.io.records import Finding, Record, Severity
 from sms.io.rig import Rig
 from sms.io.signals import is_pressure
-
-Array = NDArray[np.float64]
 
 GAP = 5.0  #: times the median step of time
 STEP_RANGE = (1e-6, 1.0)  #: s; a median step outside it is more likely a wrong unit of time

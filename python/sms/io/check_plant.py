@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from sms.arrays import Array
 from sms.io.plausible import extension_range
 from sms.io.records import Finding, Record
 from sms.io.rig import Rig
@@ -31,8 +32,6 @@ OPENS = (
 NOISY = 0.5  #: of the resolution: with more noise than this a reading cannot stand still, at an end stop neither
 ENDS = {"extension", "valve_command", "setpoint", "tank_pressure", "tank_temperature"}
 """Signals that may rest at an extreme: end stops, a command that is held, a tank that is full."""
-
-Array = NDArray[np.float64]
 
 
 def even_time(rig: Rig, record: Record) -> Iterator[Finding]:

@@ -28,13 +28,7 @@ from sms.io.schema import (
     place,
     read_rig_text,
 )
-from sms.io.signals import (
-    KINDS,
-    SIGNAL_UNITS,
-    column_name,
-    is_pressure,
-    with_controller_simulated,
-)
+from sms.io.signals import KINDS, SIGNAL_UNITS, column_name, is_pressure, with_controller_simulated
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 

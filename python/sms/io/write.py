@@ -23,6 +23,15 @@ from sms.io.units import from_si, interval_from_si, split_quantity
 from sms.parameters import Parameter
 
 
+def check_output_folder(out: Path) -> None:
+    """InputError, before any work, if nothing can be written into the folder."""
+    existing = next(p for p in (out, *out.absolute().parents) if p.exists())
+    if not existing.is_dir():
+        raise InputError(f"{existing}: this is a file, not a folder; choose another --out")
+    if not os.access(existing, os.W_OK):
+        raise InputError(f"{existing}: cannot be written to; choose another --out")
+
+
 def write_bytes_atomically(path: Path, content: bytes) -> None:
     """Write a file so that a reader sees the old one or the new one, never a part.
 

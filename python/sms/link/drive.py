@@ -8,13 +8,12 @@ from dataclasses import dataclass, field
 
 import can
 import numpy as np
-from numpy.typing import NDArray
 
+from sms.arrays import Array
 from sms.link.codec import Value, period
 from sms.link.motion import MID_HEIGHT, PlatformMotion
 from sms.link.rig_link import LinkError, RigLink
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, float], None]  #: what is being done, and which share of the whole is
 
 APPROACH = 4.0  #: s; from level to the motion's first sample, and back at the end

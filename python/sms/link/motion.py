@@ -6,17 +6,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from sms import OutOfWorkspaceError, Params, inverse_kinematics
+from sms.arrays import Array
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Table, read_table
 from sms.io.units import array_to_si, split_column_name
 
 MID_HEIGHT = 0.5  #: m; the platform's height at mid-stroke, where a heave of zero is
 
-Array = NDArray[np.float64]
 
 _COLUMNS = {"time": "s", "roll": "rad", "pitch": "rad", "heave": "m", "height": "m"}
 

@@ -17,10 +17,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
+from sms.arrays import Array
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Table, read_table
 from sms.io.units import array_to_si, split_column_name
-from sms.rows import Array
 
 Delimiter = Literal["comma", "semicolon", "tab", "whitespace"]
 COLUMN_UNITS: Mapping[str, str] = {"time": "s", "roll": "rad", "pitch": "rad", "heave": "m"}

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sms import _core
+from sms.arrays import Array
 from sms.io.errors import InputError
-from sms.rows import Array
 
 
 def sine(

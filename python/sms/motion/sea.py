@@ -27,9 +27,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms._core import Params
+from sms.arrays import Array
 from sms.io.errors import InputError
 from sms.motion.deck import DeckMotion
-from sms.rows import Array
 
 Complex = NDArray[np.complex128]
 PEAKEDNESS = 3.3  #: of JONSWAP, the mean of the campaign

@@ -6,23 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from sms.diagnosis.result import Array
-from sms.diagnosis.runs import Runs
+from sms.arrays import Array
+from sms.estimation.windows import Runs
 from sms.identification.actuator import BenchResult
 from sms.identification.bench_fit import BenchFit, Told, start_params
 from sms.identification.bench_result import gain_cell
 from sms.io.signals import SIGNAL_UNITS
 from sms.parameters import PARAMETERS
 from sms.report.markup import esc, section, table
-from sms.report.panels import (
-    Colour,
-    correlation_view,
-    figure,
-    panel,
-    thinned,
-    trace,
-    view,
-)
+from sms.report.panels import Colour, correlation_view, figure, panel, thinned, trace, view
 from sms.units_display import axis_unit, display_unit, format_estimate, format_quantity, words
 
 _SHADE: dict[str, Colour] = {

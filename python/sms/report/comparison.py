@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from sms import _core
+from sms.arrays import Array
 from sms.comparison.files import WARNING, Comparison, Signal
 from sms.comparison.metrics import FrequencyResponse
 from sms.report.markup import esc, section, table
 from sms.report.page import asset, page, plots
 from sms.report.plots import Figure, Line, figures_html, payload
-from sms.rows import Array
 from sms.units_display import axis_unit, format_aligned, format_quantity, significant, words
 
 HEADERS = (

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sms.diagnosis.result import Array, Diagnosis, Series
+from sms.arrays import Array
+from sms.diagnosis.result import Diagnosis, Series
 from sms.io.units import split_column_name
 from sms.units_display import DisplayUnit, axis_unit, words
 

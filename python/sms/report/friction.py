@@ -7,22 +7,14 @@ from typing import Any
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.prepare import Motion
 from sms.identification.friction import FrictionResult
 from sms.identification.friction_fit import EQUATION
 from sms.identification.friction_map import friction_map, law_over_record
 from sms.identification.friction_result import sentences
 from sms.parameters import PARAMETERS
 from sms.report.markup import esc, section, table
-from sms.report.panels import (
-    Colour,
-    correlation_view,
-    figure,
-    panel,
-    panels_page,
-    trace,
-    view,
-)
+from sms.report.panels import Colour, correlation_view, figure, panel, panels_page, trace, view
+from sms.rigs.cylinder import Motion
 from sms.units_display import display_unit, format_estimate, format_quantity, words
 
 _COLOURS: dict[str, Colour] = {

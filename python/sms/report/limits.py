@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import log10
 
-from sms.diagnosis.limits import Limit, Limits, Row
+from sms.diagnosis.design.detection_limits import Limit, Limits, Row
 from sms.io.signals import SIGNAL_UNITS
 from sms.report.markup import esc, section
 from sms.report.page import page

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import scipy.signal
 
+from sms.arrays import Array
 from sms.identification.noise import Noise
 from sms.report.markup import esc
 from sms.report.panels import figure, panel, panels_page, thinned, trace, view
-from sms.rows import Array
 
 
 def noise_html(

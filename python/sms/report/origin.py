@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sms.diagnosis.plant_words import two_ways
 from sms.diagnosis.result import Diagnosis, ErrorCurve, FedEquations, Hidden, Shape
 from sms.report.markup import Scale, bar, esc, section, table
+from sms.report.wording_simulated import two_ways
 from sms.report.worth import gain_table
 from sms.units_display import axis_unit, capital, format_aligned, format_percent, words
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sms.arrays import Array
 from sms.report.markup import esc
-from sms.rows import Array
 
 _MOST = 4000  # points a line
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from sms import _core
 from sms._core import Params
-from sms.rows import Array
+from sms.arrays import Array
 from sms.scenario.record import Record
 
 LONGEST = 60.0  #: s that are animated

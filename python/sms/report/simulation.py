@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from sms import _core
+from sms.arrays import Array
 from sms.parameters import PARAMETERS
 from sms.report.markup import esc, section, table
 from sms.report.page import asset, page, plots
@@ -14,7 +15,6 @@ from sms.report.plots import Figure, Line, figures_html, payload
 from sms.report.scene import LONGEST, scene_of
 from sms.report.tank import tank_figures
 from sms.requirements.table import ACCURACY
-from sms.rows import Array
 from sms.scenario.findings import Findings
 from sms.scenario.load import Scenario
 from sms.scenario.record import Record

@@ -7,11 +7,11 @@ import pandas as pd
 from scipy.stats import spearmanr
 
 from sms import _core
+from sms.arrays import Array
 from sms.io.units import split_column_name
 from sms.report.markup import esc, section, table
 from sms.report.page import asset, page, plots
 from sms.report.plots import Figure, Line, figures_html, payload
-from sms.rows import Array
 from sms.scenario.findings import quantity
 from sms.sweep.plan import Sweep
 from sms.units_display import axis_unit, words

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from sms.arrays import Array
 from sms.report.plots import Figure, Line
-from sms.rows import Array
 from sms.scenario.load import Scenario
 from sms.scenario.tank import TankRecord
 

@@ -7,8 +7,8 @@ import re
 from collections.abc import Mapping
 
 from sms.diagnosis.result import Cause, Diagnosis, Member, ParameterValue, Verdict
-from sms.diagnosis.words import NOT_FELT
 from sms.report.markup import Scale, dot, effect_label, empty, esc, paragraphs, section, table
+from sms.report.wording import INSENSITIVE
 from sms.units_display import (
     capital,
     format_aligned,
@@ -134,7 +134,7 @@ def _card(number: int, cause: Cause, diagnosis: Diagnosis) -> str:
     )
     note = f'<p class="small"><code>{esc(identifier)}</code> · {_significance(cause)}</p>'
     if cause.crosswise:
-        about += paragraphs([f"{capital(NOT_FELT)}."])
+        about += paragraphs([f"{capital(INSENSITIVE)}."])
     evidence = _consistency(cause, diagnosis.records) + _against(cause, diagnosis)
     columns = (about + evidence + note, _members(cause)) if several else (about + note, evidence)
     body = "".join(f"<div>{column}</div>" for column in columns)

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from sms import _core
+from sms.arrays import Array
 from sms.report.markup import esc, section, table
 from sms.report.page import asset, page, plots
-from sms.rows import Array
 from sms.workspace_findings import box_words, degrees, findings
 from sms.workspace_survey import Survey
 

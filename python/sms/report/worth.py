@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sms.diagnosis.result import Diagnosis, Gain, InUse, Remainder
-from sms.diagnosis.words import ARRANGED
 from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch, table
+from sms.report.wording import ARRANGED
 from sms.units_display import (
     capital,
     format_aligned,

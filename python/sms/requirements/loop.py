@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 
 from sms._core import Params
+from sms.arrays import Array
 from sms.motion.deck import faded, resampled
 from sms.motion.excitation import sine
 from sms.motion.sea import synthetic_deck_motion
 from sms.requirements.table import ACCURACY, BANDWIDTHS, RATES, SEA_STATE, SPECIFIED, Row
-from sms.rows import Array
 from sms.simulation import extensions_of, simulate_platform
 from sms.workspace_survey import DEGREE
 

@@ -8,20 +8,12 @@ import numpy as np
 
 from sms import _core
 from sms._core import Params
+from sms.arrays import Array
 from sms.cylinder import friction
 from sms.dynamics import holding_force, inverse_dynamics
 from sms.kinematics import height_range, jacobian
 from sms.motion.speed import SpeedLimits, speed_limits
-from sms.requirements.table import (
-    ACCELERATIONS,
-    BANDWIDTHS,
-    LOADS,
-    RATES,
-    REQUIRED,
-    SPECIFIED,
-    Row,
-)
-from sms.rows import Array
+from sms.requirements.table import ACCELERATIONS, BANDWIDTHS, LOADS, RATES, REQUIRED, SPECIFIED, Row
 from sms.workspace import reach, rectangle_margin
 from sms.workspace_survey import DEGREE, Box
 

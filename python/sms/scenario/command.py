@@ -25,10 +25,7 @@ from sms.motion.limits import limits_of
 from sms.motion.sea import synthetic_deck_motion
 from sms.scenario.excited import excited
 from sms.scenario.load import HIGHEST_FREQUENCY, LONGEST, Scenario, find_file
-from sms.scenario.schema import (
-    DeckMotionTable,
-    SeaTable,
-)
+from sms.scenario.schema import DeckMotionTable, SeaTable
 from sms.scenario.sent import Command
 from sms.scenario.tables import within
 

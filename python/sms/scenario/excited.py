@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from sms._core import OutOfWorkspaceError
+from sms.arrays import Array
 from sms.io.errors import InputError
 from sms.io.schema import TextOrNumber
 from sms.kinematics import inverse_kinematics
 from sms.motion.excitation import aprbs, chirp, sine, steps
-from sms.rows import Array
 from sms.scenario.load import HIGHEST_FREQUENCY, LONGEST, Scenario
 from sms.scenario.schema import AprbsTable, ChirpTable, ExcitationTable, SineTable, StepsTable
 from sms.scenario.sent import Command

@@ -10,9 +10,9 @@ from typing import Any
 import pandas as pd
 
 from sms import _core
+from sms.arrays import Array
 from sms.io import write_bytes_atomically, write_table, write_text_atomically
 from sms.report.simulation import simulation_html
-from sms.rows import Array
 from sms.scenario.findings import Findings
 from sms.scenario.load import Scenario
 from sms.scenario.record import Record

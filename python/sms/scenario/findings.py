@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from scipy.signal import welch
 
+from sms.arrays import Array
 from sms.comparison.metrics import Metrics, compare_signals
 from sms.requirements.table import ACCURACY
-from sms.rows import Array
 from sms.scenario.load import Scenario
 from sms.scenario.record import Record
 from sms.scenario.sent import Command

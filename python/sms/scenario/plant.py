@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sms.rows import Array
+from sms.arrays import Array
 from sms.scenario.load import Scenario
 from sms.scenario.record import POSE, Record
 from sms.scenario.sent import Command

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from sms.rows import Array
+from sms.arrays import Array
 
 PER_ACTUATOR = (
     ("setpoint", "m"),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sms.arrays import Array
 from sms.motion.feasible import Feasible
-from sms.rows import Array
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from sms.rows import Array
+from sms.arrays import Array
 from sms.scenario.load import Scenario
 from sms.scenario.plant import INTERRUPTED, why_it_stopped
 from sms.scenario.sent import Command
-from sms.simulation import (
-    SimulationInterruptedError,
-    SimulationStoppedError,
-    simulate_tank,
-)
+from sms.simulation import SimulationInterruptedError, SimulationStoppedError, simulate_tank
 from sms.units_display import format_quantity
 
 SIGNALS = (

@@ -18,11 +18,11 @@ import numpy as np
 from pydantic import Field
 from scipy.stats import norm, qmc
 
+from sms.arrays import Array
 from sms.io.errors import InputError
 from sms.io.schema import Table, TextOrNumber
 from sms.io.units import interval_to_si
 from sms.parameters import PARAMETERS
-from sms.rows import Array
 from sms.scenario.load import known_parameter, parameter_value, scenario_from
 from sms.scenario.tables import checked, read_toml
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.resources import files
 
-from sms.rows import Array
+from sms.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 
 from sms import forward_dynamics, forward_kinematics, inverse_kinematics, jacobian
 from sms._core import Params
+from sms.arrays import Array
 from sms.dynamics import holding_force
-from sms.rows import Array
 from sms.validation.figures import FIGURES, Row, peak_to_peak
 
 _RANGE, _FIRSTS = 0.1, 41  # rad; the published table has 201, which take five times as long here

@@ -15,8 +15,8 @@ from scipy.optimize import brentq
 from scipy.signal import detrend
 
 from sms._core import Params
+from sms.arrays import Array
 from sms.comparison import compare_signals, normalised_cross_correlation, rising_flanks
-from sms.rows import Array
 from sms.scenario import Record
 from sms.validation.figures import FIGURES, Row
 from sms.validation.runs import run, sample

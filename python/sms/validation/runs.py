@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from sms.rows import Array
+from sms.arrays import Array
 from sms.scenario import Record, command_of, run_scenario, scenario_from
 from sms.scenario.plant import INTERRUPTED
 

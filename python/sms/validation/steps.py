@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import detrend
 
-from sms.rows import Array
+from sms.arrays import Array
 from sms.scenario import Record
 from sms.validation.figures import FIGURES, Row, peak_to_peak
 from sms.validation.runs import crossing, run, sample

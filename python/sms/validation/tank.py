@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp
 
 from sms import _core
 from sms._core import Params
+from sms.arrays import Array
 from sms.identification.flow import fit_record
 from sms.identification.flow_record import FlowRecord
 from sms.io.rig import Declaration
 from sms.parameters import PARAMETERS
-from sms.rows import Array
 from sms.validation.figures import FIGURES, Row
 
 _OPENINGS = 0.8, 1.2, 1.8, 2.6, 3.5  # V from the centre

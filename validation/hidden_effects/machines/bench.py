@@ -15,12 +15,7 @@ import numpy as np
 from validation.compiled import compiled
 from validation.hidden_effects.machines.air import Array, chamber_rates, supply_now, valve_map
 from validation.hidden_effects.machines.machine import Machine
-from validation.hidden_effects.machines.seal import (
-    end_force,
-    friction,
-    odd_force,
-    pressure_force,
-)
+from validation.hidden_effects.machines.seal import end_force, friction, odd_force, pressure_force
 
 SAMPLE_STEP = 5.0e-3
 """s between two samples of a record."""

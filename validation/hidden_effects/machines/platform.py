@@ -19,12 +19,7 @@ from validation.compiled import compiled
 from validation.hidden_effects.machines.air import Array, chamber_rates, valve_map
 from validation.hidden_effects.machines.machine import Body, Machine
 from validation.hidden_effects.machines.published import MECHANISM
-from validation.hidden_effects.machines.seal import (
-    end_force,
-    friction,
-    odd_force,
-    pressure_force,
-)
+from validation.hidden_effects.machines.seal import end_force, friction, odd_force, pressure_force
 from validation.multibody.mechanism import mechanism_of
 from validation.plants.mechanism import (
     Mechanism,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from sms.diagnosis.catalogue import Effect
+from sms.arrays import Array
+from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, unseen
-from sms.diagnosis.result import Array
-from sms.diagnosis.runs import Runs
-from sms.diagnosis.search import screen_effects
+from sms.diagnosis.selection.candidates import score_effects
+from sms.estimation.windows import Runs
 
 from validation.hidden_effects.peers.scoring import Said
 
@@ -53,7 +53,7 @@ def single_causes(
     baseline: Fitted, data: Data, effects: Sequence[Effect]
 ) -> list[tuple[Effect, Fitted]]:
     """Fits of the effects that promise most by a linear step, each alone on top of the baseline."""
-    promised = screen_effects(baseline, data, effects, np.random.default_rng(1)).gain
+    promised = score_effects(baseline, data, effects, np.random.default_rng(1)).gain
     tried = [effects[int(k)] for k in np.argsort(-promised)[:MOST_FITS]]
     return [(e, fit(baseline.hypothesis.with_effect(e), data.identify)) for e in tried]
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 from sms.diagnosis import diagnose
-from sms.diagnosis.catalogue import catalogue
+from sms.diagnosis.effects.catalogue import catalogue
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
-from sms.diagnosis.method import read_and_check, split
-from sms.diagnosis.prepare import Comparison, prepare
+from sms.diagnosis.pipeline import read_and_check, split
 from sms.diagnosis.result import Diagnosis
-from sms.diagnosis.visible import testable
+from sms.diagnosis.selection.identifiability import identifiable
 from sms.io.rig import load_rig
+from sms.rigs.cylinder import Comparison, prepare
 
 from validation.hidden_effects import effects
 from validation.hidden_effects.draw import draw, open_truth
@@ -58,7 +58,7 @@ def ask(seed: int, sort: str, multiple: float) -> tuple[list[Said], Question]:
         truth = open_truth(sealed, records)
     hidden = truth["effect"] if truth["signal"] is None else f"{truth['effect']}:{truth['signal']}"
     baseline = fit(baseline_hypothesis(data, catalogue()), data.identify)
-    able, _ = testable(baseline, data, catalogue())
+    able, _ = identifiable(baseline, data, catalogue())
     said = [
         said_by_diagnosis(answer, trial, sort, hidden),
         best_by_aic(baseline, data, able, trial, sort, hidden),

@@ -16,15 +16,21 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sms.diagnosis.catalogue import Effect, effects_of
-from sms.diagnosis.equation_error import AVERAGE, ENDS, Fed, errors_of
-from sms.diagnosis.excess import excess_of
+from sms.diagnosis.adequacy.lack_of_fit import lack_of_fit
+from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.hypothesis import Fitted, nuisance_of, refitted
-from sms.diagnosis.kind import Run
-from sms.diagnosis.localise import belong_together, leg_of, with_curve, with_terms
-from sms.diagnosis.plant import Case
-from sms.diagnosis.runs import Runs
-from sms.diagnosis.visible import testable
+from sms.diagnosis.localisation.equation_error import Fed, errors_of
+from sms.diagnosis.localisation.unknown_inputs import (
+    belong_together,
+    leg_of,
+    with_curve,
+    with_terms,
+)
+from sms.diagnosis.selection.identifiability import identifiable
+from sms.diagnosis.simulated import Case
+from sms.diagnosis.thresholds import AVERAGE, ENDS
+from sms.estimation.run import Run
+from sms.estimation.windows import Runs
 
 from validation.hidden_effects.machines.draw import open_truth
 from validation.hidden_effects.machines.scoring import BLOCKS, Outcome
@@ -169,7 +175,7 @@ def _by_aic(case: Case) -> Iterator[Opinion]:
             effect is not None,
             margin,
             [_equation_of(effect)] if effect else [],
-            taken(case, excess_of(fitted, data)),
+            taken(case, lack_of_fit(fitted, data)),
             None,
         )
 
@@ -180,7 +186,7 @@ def _single_causes(case: Case) -> list[tuple[Effect, Fitted]]:
         trials = case.outcome.rounds[0].trials
         if fits := [(t.effect, t.fitted) for t in trials if t.fitted is not case.baseline]:
             return fits
-    able, _ = testable(case.baseline, case.data, effects_of(case.data.rig))
+    able, _ = identifiable(case.baseline, case.data, effects_of(case.data.rig))
     return single_causes(case.baseline, case.data, able)
 
 

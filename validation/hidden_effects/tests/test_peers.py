@@ -66,7 +66,7 @@ def test_a_question_survives_the_way_to_the_peers(tmp_path: Path) -> None:
 
 
 def test_a_trial_brings_the_diagnosis_the_best_aic_and_a_question() -> None:
-    """Seed 2 hides a sensor's gain; its rival for the same footprint is the other sensor's, or the bore."""
+    """Seed 2 hides a sensor's gain; its rival for the same sensitivity is the other sensor's, or the bore."""
     answers, question = ask(2, "catalogue", 3.0)
     assert [s.method for s in answers] == ["sms diagnose", "best AIC, same candidates"]
     assert answers[0].verdict in ("right", "class")

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
+from sms.arrays import Array
 from sms.diagnosis.own.model import Equation, Values
-from sms.diagnosis.result import Array
 from sms.io.errors import InputError
 
 _NUMBERS = ctypes.POINTER(ctypes.c_double)

@@ -1,6 +1,7 @@
-"""An own model in the diagnosis: the same search and the same judgement as for the rigs of this project (plant.py).
+"""An own model in the diagnosis: the same search and the same judgement as for the rigs of this project (simulated.py).
 
-What the method asks of a rig (io/rig.py) and of a kind of rig (kind.py) is answered here from the model's declarations.
+What the method asks of a rig (io/rig.py) and of a kind of rig (estimation/kind.py) is answered here from what the
+model declares.
 """
 
 from __future__ import annotations
@@ -14,19 +15,25 @@ from typing import cast
 import numpy as np
 
 from sms import _core
-from sms.diagnosis import catalogue, plant, words
-from sms.diagnosis.kind import Kind, Run, WindowProblem
+from sms.arrays import Array
+from sms.diagnosis import simulated
+from sms.diagnosis.effects import catalogue
 from sms.diagnosis.own.model import Effect, Model
 from sms.diagnosis.own.records import Record, check
 from sms.diagnosis.own.shooting import ShootingProblem, Stretch
-from sms.diagnosis.report import report_html
-from sms.diagnosis.result import Array, Diagnosis, as_json
-from sms.diagnosis.rounds import Progress
-from sms.diagnosis.runs import sample_noise
+from sms.diagnosis.result import Diagnosis, as_json
+from sms.diagnosis.selection.forward_selection import Progress
+from sms.diagnosis.thresholds import FEWEST_WINDOWS
+from sms.estimation.kind import Kind
+from sms.estimation.noise import sample_noise
+from sms.estimation.problem import WindowProblem
+from sms.estimation.run import Run
 from sms.io.errors import InputError
 from sms.io.rig import DataLayout, Declaration, Rig
 from sms.io.write import write_text_atomically
 from sms.parameters import Parameter
+from sms.report import wording
+from sms.report.diagnosis import report_html
 
 
 @dataclass(frozen=True)
@@ -79,23 +86,19 @@ def diagnose_model(
         },
     )
     if faults:
-        return replace(blank, verdict="data-fault", sentence=words.data_fault(faults))
+        return replace(blank, verdict="data-fault", sentence=wording.data_fault(faults))
     rng = np.random.default_rng(seed)
     runs = [_run_of(model, record) for record in records]
-    data = plant.split(rig, _kind_of(model, window), runs, _noise_of(model, runs))
+    data = simulated.split(rig, _kind_of(model, window), runs, _noise_of(model, runs))
     fewest = min(len(part.problem.windows) for part in (data.identify, data.validate))  # type: ignore[union-attr]
-    if fewest < FEWEST:
+    if fewest < FEWEST_WINDOWS:
         raise InputError(
-            f"{model.title}: the records of one role make {fewest} windows of {window:g} s; {FEWEST} are the least "
-            "that can be judged on, so take a shorter window or more records"
+            f"{model.title}: the records of one role make {fewest} windows of {window:g} s; "
+            f"{FEWEST_WINDOWS} are the least that can be judged on, so take a shorter window or more records"
         )
     effects = tuple(_effect_of(model, effect) for effect in model.effects)
-    case = plant.investigate(data, effects, rng, progress)
-    return plant.complete(blank, case, rng, progress, empirical)
-
-
-FEWEST = 6
-"""Windows of a role."""
+    case = simulated.investigate(data, effects, rng, progress)
+    return simulated.complete(blank, case, rng, progress, empirical)
 
 
 def write_diagnosis(diagnosis: Diagnosis, out: Path) -> tuple[Path, Path]:

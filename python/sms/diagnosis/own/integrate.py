@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sms.arrays import Array
 from sms.diagnosis.own.model import Equation, Model, Values
-from sms.diagnosis.result import Array
 
 Push = Callable[[float], Array]
 """Of the time in samples since the window began to what is added to the derivative (states, n)."""

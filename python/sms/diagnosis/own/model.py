@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sms.diagnosis.result import Array
+from sms.arrays import Array
 from sms.io.errors import InputError, did_you_mean
 
 Numbers = float | NDArray[np.float64]
@@ -120,7 +120,7 @@ class Effect:
     separated_by: str = "A measurement of the quantity itself."
     """What would tell it from effects that look alike."""
     step: float | None = None
-    """For a term without slope at its neutral value: the size at which its footprint is taken."""
+    """For a term without slope at its neutral value: the size at which its sensitivity is taken."""
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from sms.arrays import Array
 from sms.diagnosis.own.model import Input, Model, Output
-from sms.diagnosis.result import Array, Finding
+from sms.diagnosis.result import Finding
 from sms.io.errors import InputError, did_you_mean
 from sms.io.rig import Role
 from sms.io.tables import read_table

@@ -1,7 +1,7 @@
 """A model held against records by multiple shooting: what libsms/estimation/shooting.hpp does for the core's plants.
 
 A record is cut into windows, each simulated from the state that fits it best; what that state can undo of a parameter's
-footprint does not count. All windows of all records are simulated at once. Derivatives are central differences, one
+sensitivity does not count. All windows of all records are simulated at once. Derivatives are central differences, one
 simulation for all parameters together.
 """
 
@@ -13,13 +13,12 @@ from typing import TypeVar
 
 import numpy as np
 
+from sms.arrays import Array
 from sms.diagnosis.own.integrate import Batch, simulate
 from sms.diagnosis.own.model import Model, Values
-from sms.diagnosis.result import Array
+from sms.diagnosis.thresholds import DIFFERENCE
 
 Thing = TypeVar("Thing")
-DIFFERENCE = 1e-5
-"""Of a number's scale: the step of a central difference."""
 LARGEST_BATCH = 4000
 """Simulations side by side: more do not fit a processor's cache."""
 MOST_STEPS = 12

@@ -1,0 +1,128 @@
+"""The command `sms`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
+
+from sms import _core
+from sms.cli import can, identify, limits, mechanism, noise, simulate, study, trials, validate
+from sms.io.errors import InputError
+
+app = typer.Typer(
+    help="Pneumatic motion platform: what measured data says about its simulation.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="markdown",
+)
+BAD_INPUT = 2
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(_core.__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _sms(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_version, is_eager=True, help="Print the version and stop."
+        ),
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command(
+    epilog="Example: **sms diagnose cylinder_o_ring.toml --out report** reads the rig file, finds what its "
+    "model gets wrong on the records it lists, and writes report/report.html (look at it in a "
+    "browser), report/diagnosis.json (for programs) and report/extended.toml (the rig file with the "
+    "causes built in; diagnose accepts it again)."
+)
+def diagnose(
+    rig: Annotated[
+        Path,
+        typer.Argument(
+            help="The rig file (TOML): what was measured, what is known, which records."
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Option(help="Folder for report.html, diagnosis.json and extended.toml.")
+    ] = Path("diagnosis"),
+    seed: Annotated[
+        int, typer.Option(help="Seed of the resampling; the same seed gives the same answer.")
+    ] = 1,
+    empirical: Annotated[
+        bool,
+        typer.Option(
+            "--empirical",
+            help="Where the cause is unknown, carry the curve of what is missing along as an empirical term (not "
+            "explained), measure its gain on unseen records and write it to empirical.csv.",
+        ),
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print diagnosis.json instead of the table.")
+    ] = False,
+) -> None:
+    """Find what the simulation of a rig gets wrong, name the cause, extend the model, measure the gain.
+
+    The model is fitted to the records with role *identify*, every effect of the catalogue that these signals can
+    show is tried on top of it, and only what also helps on the records with role *validate* is named. The verdict
+    is one of: no-evidence, cause, class (causes that these signals cannot tell apart), combination, unknown,
+    data-fault.
+    """
+    from sms.diagnosis import diagnose as run  # noqa: PLC0415 (scipy takes a second; --help must not)
+    from sms.io.write import check_output_folder  # noqa: PLC0415
+    from sms.report.console import print_diagnosis  # noqa: PLC0415
+    from sms.report.files import write_diagnosis  # noqa: PLC0415
+
+    check_output_folder(out)
+    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("reading records", total=1.0)
+        answer = run(
+            rig,
+            seed,
+            lambda text, done: progress.update(task, description=text, completed=done),
+            empirical,
+        )
+        progress.update(task, description="writing the report", completed=0.95)
+        files = write_diagnosis(answer, rig, out)
+    if as_json:
+        print(json.dumps(answer.to_dict(), indent=1))
+        return
+    console = Console()
+    print_diagnosis(answer, console)
+    console.print(f"[dim]written: {', '.join(str(f) for f in files)}[/dim]", soft_wrap=True)
+
+
+mechanism.register(app)
+identify.register(app)
+limits.register(app)
+simulate.register(app)
+study.register(app)
+can.register(app)
+noise.register(app)
+validate.register(app)
+trials.register(app)
+
+
+def main() -> None:
+    """Run the command; a person's bad input is one sentence and exit code 2."""
+    try:
+        app()
+    except InputError as problem:
+        print(f"sms: {problem}", file=sys.stderr)
+        sys.exit(BAD_INPUT)
+    except KeyboardInterrupt:
+        print("sms: stopped; nothing was written", file=sys.stderr)
+        sys.exit(130)

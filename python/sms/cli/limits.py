@@ -1,0 +1,78 @@
+"""The command `sms limits`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.measure import Measurement
+from rich.table import Table
+
+from sms.progress import progress_bar
+
+if TYPE_CHECKING:
+    from sms.diagnosis.design.detection_limits import Limits
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command(
+        epilog="Examples: **sms limits bench** for the published machine with typical sensors; **sms limits rig.toml** "
+        "for your own machine, sensors and records. A bench takes half a minute, a platform some minutes."
+    )(limits)
+
+
+def limits(
+    rig: Annotated[
+        str, typer.Argument(help="A rig file (TOML); or bench, platform or tank, as published.")
+    ],
+    out: Annotated[Path, typer.Option(help="Folder for limits.html and limits.csv.")] = Path(
+        "limits"
+    ),
+) -> None:
+    """How small an effect may be before an experiment no longer shows it.
+
+    For each effect of the catalogue and each experiment of the menu from which the diagnosis proposes, and for each
+    record that the rig file lists: the size that one such run shows by three standard errors, with the noise as
+    declared and everything that is declared as uncertain free to move. "-" is an effect that it cannot show; the page
+    says why.
+    """
+    from sms.diagnosis.design.detection_limits import as_csv, detection_limits  # noqa: PLC0415
+    from sms.io import write_text_atomically  # noqa: PLC0415
+    from sms.io.write import check_output_folder  # noqa: PLC0415 (scipy takes a second)
+    from sms.report.limits import limits_html  # noqa: PLC0415
+
+    check_output_folder(out)
+    with progress_bar("simulating the experiments") as progress:
+        found = detection_limits(rig, progress)
+    out.mkdir(parents=True, exist_ok=True)
+    write_text_atomically(out / "limits.csv", as_csv(found))
+    write_text_atomically(out / "limits.html", limits_html(found))
+    console = Console()
+    for number, title in enumerate(found.experiments, 1):
+        console.print(f"{number}  {title}")
+    table = table_of(found)
+    # Numbers are not cut: beyond the terminal's width lines wrap.
+    wide = console.options.update(max_width=1000)
+    console.width = max(console.width, Measurement.get(console, wide, table).maximum)
+    console.print(table)
+    console.print(
+        f"[dim]written: {out / 'limits.html'}, {out / 'limits.csv'}[/dim]", soft_wrap=True
+    )
+
+
+def table_of(found: Limits) -> Table:
+    """Effects by experiments, in natural units."""
+    table = Table(
+        title=f"smallest size that is seen: {found.title}", title_justify="left", box=None
+    )
+    table.add_column("effect", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for number in range(1, len(found.experiments) + 1):
+        table.add_column(str(number), justify="right", no_wrap=True)
+    for row in found.rows:
+        unit, sizes = row.shown
+        table.add_row(row.effect.key, unit, *sizes)
+    return table

@@ -1,0 +1,176 @@
+"""How large a cause is: over all records, in one of them alone, and in any part of their windows.
+
+A part is asked by itself: what else is free may move in it as it likes, within what is declared.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sms.arrays import Array, Index
+from sms.diagnosis.effects.catalogue import Effect
+from sms.diagnosis.evidence import value_of
+from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, refitted
+from sms.diagnosis.result import ParameterValue
+from sms.diagnosis.selection.identifiability import raw_columns
+from sms.estimation.nuisance import Nuisance
+from sms.estimation.windows import Runs
+
+Estimate = tuple[float, float]
+"""Value and standard error."""
+
+
+@dataclass(frozen=True)
+class ByWindow:
+    """The normal equations of a cause's parameter beside all that is free, for each window of one role's records."""
+
+    value: float
+    gram: Array
+    """(windows, k + 2, k + 2): products of the columns of what is free, of the cause, and of the residual."""
+    pull: Array
+    """(k,) squared, per unit of the columns."""
+    pulled: Array
+    """(k,) the same times the distance from what is declared."""
+    scale: float
+    """Of the cause's column."""
+    rows: Index
+    """(windows,)"""
+    names: list[str]
+    """Of the records."""
+    record: Index
+    """(windows,): place in them."""
+    mean: dict[str, Array]
+    """(windows,) of each signal."""
+
+    def size(self, chosen: NDArray[np.bool_]) -> Estimate | None:
+        """The parameter as these windows alone have it; None where they do not show it."""
+        k = len(self.pull)
+        gram = self.gram[chosen].sum(axis=0)
+        free = gram[:k, :k] + np.diag(self.pull)
+        undone = np.linalg.pinv(free, rcond=1e-12, hermitian=True) @ gram[:k, k]
+        information = float(gram[k, k] - gram[:k, k] @ undone)
+        if information <= 1e-12 * float(gram[k, k]):
+            return None
+        score = float(gram[k, k + 1] - undone @ (gram[:k, k + 1] + self.pulled))
+        left = float(gram[k + 1, k + 1]) / float(self.rows[chosen].sum())
+        return (
+            self.value - score / information / self.scale,
+            float(np.sqrt(left / information)) / self.scale,
+        )
+
+
+def found_value(fitted: Fitted, effect: Effect, data: Data) -> ParameterValue:
+    """A cause's parameter. Its error is that of the fit or that between records, whichever is larger."""
+    name = effect.parameters[0]
+    own = fitted.standard_error(name)
+    estimates = list(record_by_record(fitted, effect, data).values())
+    weight = np.array([1.0 / e**2 for _, e in estimates])
+    values = np.array([v for v, _ in estimates])
+    between = 0.0
+    if len(values) > 1:
+        centre = float(np.sum(weight * values) / np.sum(weight))
+        between = float(
+            np.sqrt(np.sum(weight * (values - centre) ** 2) / np.sum(weight) / (len(values) - 1))
+        )
+    return value_of(fitted, name, data.rig.declared(name).value, max(own, between))
+
+
+def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, Estimate]:
+    """Record -> the parameter refitted on it alone with its error, the free parameters within what is declared."""
+    out = {}
+    for part in parts_of(fitted, effect, data):
+        for number, name in enumerate(part.names):
+            found = part.size(part.record == number)
+            if found is not None:
+                out[name] = found
+    return out
+
+
+def parts_of(fitted: Fitted, effect: Effect, data: Data) -> list[ByWindow]:
+    """A cause window by window, of the records that were fitted and of those that were not."""
+    assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
+    return [
+        _by_window(data.identify, fitted, effect),
+        _by_window(data.validate, refitted(fitted, data), effect),
+    ]
+
+
+def _by_window(runs: Runs, at: Fitted, effect: Effect) -> ByWindow:
+    name = effect.parameters[0]
+    residual = at.fit.residual
+    column = column_of(runs, at, effect)
+    nuisance = _others_free(at, effect)
+    columns = np.column_stack([nuisance.jacobian, column])
+    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    stacked = np.column_stack([columns / scale, residual])
+    first = np.flatnonzero(np.diff(runs.block, prepend=-1))
+    parts = np.split(stacked, first[1:])
+    rows = np.array([len(part) for part in parts])
+    pull = nuisance.pull / scale[:-1]
+    return ByWindow(
+        at.params[name],
+        np.array([part.T @ part for part in parts]),
+        pull**2,
+        pull * nuisance.pull * nuisance.off,
+        float(scale[-1]),
+        rows,
+        [run.name for run in runs.motions],
+        runs.record[first],
+        {n: np.add.reduceat(v, first) / rows for n, v in drawn_over(runs).items()},
+    )
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What all else that is free cannot undo of a cause, at one model."""
+
+    nuisance: Nuisance
+    basis: Array
+    residual: Array
+    """(rows + known,), less what the others can undo."""
+
+    def gram(self, columns: Array) -> Array:
+        """(m + 1, m + 1): products of sensitivities (rows, m) and of the residual, less what the others can undo."""
+        full = self.nuisance.with_declared(columns)
+        left = np.column_stack([full - self.basis @ (self.basis.T @ full), self.residual])
+        return np.asarray(left.T @ left)
+
+
+def beside(at: Fitted, effect: Effect) -> Beside:
+    nuisance = _others_free(at, effect)
+    basis = nuisance.basis()
+    full = np.concatenate([at.fit.residual, nuisance.pull * nuisance.off])
+    return Beside(nuisance, basis, full - basis @ (basis.T @ full))
+
+
+def linear(gram: Array, rows: int) -> tuple[Array, Array] | None:
+    """The step (m,) from such products, summed over records, and its covariance (m, m); None where one is not seen."""
+    information, score = gram[:-1, :-1], gram[:-1, -1]
+    if np.linalg.det(information) <= 1e-12 * float(np.prod(np.diag(information))):
+        return None
+    inverse = np.linalg.inv(information)
+    step = -inverse @ score
+    return step, inverse * float(gram[-1, -1] + score @ step) / rows
+
+
+def _others_free(at: Fitted, effect: Effect) -> Nuisance:
+    nuisance, name = nuisance_of(at), effect.parameters[0]
+    return nuisance.without(name) if name in nuisance.names else nuisance
+
+
+def column_of(runs: Runs, at: Fitted, effect: Effect) -> Array:
+    """(rows,): change of the residual with the cause's parameter."""
+    free = list(at.hypothesis.free)
+    if effect.step is None and effect.parameters[0] in free:
+        return at.fit.jacobian[:, free.index(effect.parameters[0])]
+    return raw_columns(at, runs, [effect])[:, 0]
+
+
+def drawn_over(runs: Runs) -> dict[str, Array]:
+    """(rows,) each: what the machine was doing; of what goes both ways, how far too."""
+    inputs = runs.inputs
+    both = {n: v for n, v in inputs.items() if np.min(v) < 0.0 < np.max(v)}
+    return inputs | {f"magnitude of {n}": np.abs(v) for n, v in both.items()}

@@ -1,0 +1,46 @@
+"""The verdict, from what the extended model leaves and from what its causes are asked."""
+
+from __future__ import annotations
+
+from sms.diagnosis.adequacy.hysteresis import Hysteresis, hysteresis
+from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, explained, small
+from sms.diagnosis.adequacy.parameter_constancy import Inconstancy, inconstancy
+from sms.diagnosis.adequacy.record_consistency import differ
+from sms.diagnosis.adequacy.subset_estimates import record_by_record
+from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.result import Verdict
+from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.forward_selection import Outcome
+
+
+def inconstancy_of(outcome: Outcome, data: Data) -> Inconstancy | Hysteresis | None:
+    """Of the first class in which nothing is what it is called: how that shows of the one that comes nearest."""
+    for members in outcome.found:
+        laws = (
+            _not_as_named(m, outcome.final if m is members[0] else m.fitted, data) for m in members
+        )
+        nearest = next(laws)
+        if nearest is not None and all(law is not None for law in laws):
+            return nearest
+    return None
+
+
+def _not_as_named(member: Trial, fitted: Fitted, data: Data) -> Inconstancy | Hysteresis | None:
+    return inconstancy(fitted, member.effect, data) or hysteresis(fitted, member.effect, data)
+
+
+def consistent(cause: Trial, final: Fitted, data: Data) -> bool:
+    """Whether the records agree on a cause's size."""
+    each = record_by_record(final, cause.effect, data)
+    return not differ(list(each.values()), data.rig.declared(cause.effect.parameters[0]).value)
+
+
+def decide(outcome: Outcome, before: LackOfFit, after: LackOfFit) -> Verdict:
+    """One of the verdicts, data-fault aside."""
+    if small(before):
+        return "no-evidence"
+    if not outcome.groups or not explained(before, after):
+        return "unknown"
+    if len(outcome.groups) > 1:
+        return "combination"
+    return "cause" if len(outcome.groups[0]) == 1 else "class"

@@ -1,0 +1,129 @@
+"""The next experiment: which run of a safe menu would tell the remaining explanations apart.
+
+Every run of the menu of this kind of rig is simulated with the model as it stands, and the rivals' sensitivities in it
+are computed. What one rival does and no other rival and no known parameter
+can imitate, in standard errors, is the separation to be expected; the run with the largest smallest separation is
+proposed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+
+from sms.arrays import Array
+from sms.diagnosis.effects.catalogue import Effect
+from sms.diagnosis.effects.sensitivity import sensitivity_columns
+from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.result import Hidden, NextExperiment, Verdict
+from sms.estimation.kind import Experiment
+from sms.estimation.nuisance import nuisance_at, project
+from sms.estimation.windows import Runs
+
+
+def next_experiment(
+    verdict: Verdict,
+    classes: Sequence[Sequence[Effect]],
+    final: Fitted,
+    data: Data,
+    hidden: Hidden,
+    unfelt: Sequence[Effect] = (),
+) -> NextExperiment | None:
+    """The measurement that would tell most; None when there is nothing to tell apart.
+
+    unfelt: causes that the records kept aside do not feel.
+    """
+    rivals = next((list(c) for c in classes if len(c) > 1), [])
+    if rivals:
+        found = best_of_menu(rivals, final, data)
+        if found is not None:
+            experiment, separation = found
+            apart = tuple(e.id if e.signal is None else f"{e.id} {e.signal}" for e in rivals)
+            power = (
+                f"expected to tell them apart by {separation:.1f} standard errors"
+                if separation >= 3.0
+                else f"the best of the menu, though by {separation:.1f} standard errors only: better "
+                + rivals[0].separated_by[:1].lower()
+                + rivals[0].separated_by[1:].rstrip(".")
+            )
+            return NextExperiment(experiment.title, f"{experiment.how}; {power}.", apart)
+    if rivals:
+        return NextExperiment(
+            "Tell the explanations apart", rivals[0].separated_by, tuple(e.id for e in rivals)
+        )
+    if verdict == "unknown":
+        return _for_unknown(hidden)
+    if unfelt:
+        effect = unfelt[0]
+        return NextExperiment(
+            'A record that feels it, kept aside with role = "validate"',
+            f"those of today do not feel {effect.title}, so that the fitted ones alone speak for it. What shows it: "
+            + effect.separated_by[:1].lower()
+            + effect.separated_by[1:],
+            (),
+        )
+    return None
+
+
+def _for_unknown(hidden: Hidden) -> NextExperiment:
+    """What would show more of a term that has no name."""
+    signal, equation = (
+        s.split(" [")[0].replace("_", " ") for s in (hidden.shape.signal, hidden.equation)
+    )
+    again = "repeat it once, so that chance can be told from a cause"
+    if signal == "time":
+        return NextExperiment(
+            "The machine at rest, for as long as a run",
+            f"no signal of these records brings the missing term in {equation}: at rest it shows whether it comes with "
+            f"time, from outside, or with the motion; {again}.",
+            (),
+        )
+    return NextExperiment(
+        f"A run that moves {signal} alone",
+        f"shows whether the missing term in {equation} follows {signal} or something that moved with it; {again}.",
+        (),
+    )
+
+
+def best_of_menu(
+    rivals: Sequence[Effect], final: Fitted, data: Data
+) -> tuple[Experiment, float] | None:
+    """The run of the menu with the largest smallest separation of two rivals, in standard errors."""
+    runs = data.identify
+    assert isinstance(runs, Runs)
+    best: tuple[Experiment, float] | None = None
+    for experiment in runs.kind.menu:
+        run = experiment.simulated(data.rig, final.params, runs.channels)
+        if run is None:
+            continue
+        separation = min_separation(rivals, final, replace(runs, motions=(run,)))
+        if best is None or separation > best[1]:
+            best = experiment, separation
+    return best
+
+
+def min_separation(rivals: Sequence[Effect], final: Fitted, runs: Runs) -> float:
+    """Smallest, over pairs, of what one rival does that another cannot imitate, in standard errors."""
+    h = final.hypothesis
+    names = [n for n in final.movable if n not in {p for e in rivals for p in e.parameters}]
+    residual, nuisance = nuisance_at(runs.problem, final.params, names, h.known)
+    columns = sensitivity_columns(runs.problem, final.params, residual, rivals, h.table)
+    sensitivity = project(nuisance, columns, [e.parameters[0] for e in rivals])
+    sizes = _sizes(rivals, final, sensitivity)
+    smallest = np.inf
+    for i, j in permutations(range(len(rivals)), 2):
+        a, b = sensitivity[:, i] * sizes[i], sensitivity[:, j]
+        rest = a - b * float(a @ b) / max(float(b @ b), 1e-300)
+        smallest = min(smallest, float(np.linalg.norm(rest)))
+    return smallest
+
+
+def _sizes(rivals: Sequence[Effect], final: Fitted, sensitivity: Array) -> Array:
+    """How large each rival would be: the first as found, the others with the same sensitivity in size."""
+    name = rivals[0].parameters[0]
+    found = abs(final.params[name] - final.hypothesis.start[name])
+    size = np.linalg.norm(sensitivity, axis=0)
+    return np.asarray(found * size[0] / np.maximum(size, 1e-300))

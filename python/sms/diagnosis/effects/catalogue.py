@@ -1,0 +1,179 @@
+"""The effects that can be named: one hypothesis for each effect and each signal or part that it can sit on.
+
+cylinder.toml is that of a cylinder's force balance, pneumatic.toml that of tank, bench and platform,
+platform.toml what the platform has beyond it.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.resources import files
+from typing import Any, Literal
+
+from sms.io.rig import Rig
+from sms.io.signals import LEGS, without_leg
+from sms.parameters import PARAMETERS, common_parameter, is_of_leg
+
+SIGNALS_IN_WORDS = {
+    "rod_force": "rod force",
+    "chamber_pressure_lower": "lower chamber pressure",
+    "chamber_pressure_upper": "upper chamber pressure",
+    "extension": "position",
+    "supply_pressure": "supply pressure",
+    "chamber_pressure": "chamber pressures",
+    "tank_pressure": "tank's pressure",
+    "tank_temperature": "tank's temperature",
+    "proportional_gain": "proportional gain",
+    "integral_gain": "integral gain",
+    "derivative_gain": "derivative gain",
+    "dead_band_step": "step over the dead band",
+    "position_gain": "gain of position",
+    "velocity_gain": "gain of velocity",
+    "acceleration_gain": "gain of acceleration",
+}
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One hypothesis: an effect of the catalogue, for one signal where it belongs to a sensor."""
+
+    id: str
+    signal: str | None
+    """The sensor it sits on, or the part of the machine ("lower"); None where there is only one."""
+    kind: Literal["missing", "shifted"]
+    parameters: tuple[str, ...]
+    block: str
+    title: str
+    cause: str
+    signature: str
+    needs: tuple[str, ...]
+    plausible: tuple[float, float]
+    separated_by: str
+    confusable: tuple[str, ...] = ()
+    of_sensor: bool = False
+    """`signal` names a measured signal, without which there is nothing to test."""
+    step: float | None = None
+    """The size at which its sensitivity is taken, where it has no slope at its neutral value."""
+    absolute: bool = False
+    """Of a shifted parameter: `plausible` is a shift in its unit, not relative."""
+    chambers: str | None = None
+    """The law of the chambers under which the hypothesis stands; None under any."""
+    controller: str | None = None
+    """"recorded", or the law of a simulated controller, under which the hypothesis stands; None under any."""
+
+    @property
+    def key(self) -> str:
+        """Its name in messages: "sensor_gain of rod_force"."""
+        return self.id if self.signal is None else f"{self.id} of {self.signal}"
+
+    def plausible_range(self, reference: float) -> tuple[float, float]:
+        """The plausible values of its parameter, SI; `reference` is the declared value, that of all legs."""
+        low, high = self.plausible
+        if self.kind == "missing":
+            return low, high
+        if not self.absolute:
+            low, high = reference * low, reference * high
+        if is_of_leg(self.parameters[0]):
+            return low, high
+        return reference + low, reference + high
+
+
+def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
+    of_sensor = "signals" in entry
+    for place in entry.get("signals", entry.get("parts", [None])):
+        said = _said(place)
+        text = {key: entry[key].format(signal=said, part=said) for key in ("title", "cause")}
+        text |= {
+            key: entry[key].format(signal=said, part=said) for key in ("signature", "separated_by")
+        }
+        yield Effect(
+            id=entry["id"],
+            signal=place,
+            kind=entry["kind"],
+            parameters=tuple(
+                _of_leg(p.format(signal=place, part=place)) for p in entry["parameters"]
+            ),
+            block=entry["block"],
+            needs=tuple(entry["needs"]),
+            plausible=_plausible(entry["plausible"], place),
+            confusable=tuple(entry.get("confusable", ())),
+            of_sensor=of_sensor,
+            step=entry.get("step"),
+            absolute=entry.get("absolute", False),
+            chambers=entry.get("chambers"),
+            controller=entry.get("controller"),
+            **text,
+        )
+
+
+def _plausible(
+    said: list[float] | dict[str, list[float]], place: str | None
+) -> tuple[float, float]:
+    """The range of an entry, or its range for one signal, of whatever leg."""
+    low, high = said if isinstance(said, list) else said[without_leg(place or "")]
+    return low, high
+
+
+def _said(place: str | None) -> str | None:
+    """ "extension_2" -> "position of leg 2"."""
+    if place is None or without_leg(place) == place:
+        return SIGNALS_IN_WORDS.get(place or "", place)
+    return f"{_said(without_leg(place))} of leg {place[-1]}"
+
+
+def _of_leg(parameter: str) -> str:
+    """The parameter of a leg's sensor: "sensor_gain_extension_2" -> "sensor_gain_extension:2"."""
+    common = without_leg(parameter)
+    return (
+        parameter
+        if parameter in PARAMETERS
+        else common + parameter[len(common) :].replace("_", ":")
+    )
+
+
+def _in_one_leg(effects: Sequence[Effect], ids: Sequence[str]) -> Iterable[Effect]:
+    """Each effect of these ids once more for every leg that may have it alone."""
+    for effect in effects:
+        for leg in LEGS if effect.id in ids else ():
+            yield replace(
+                effect,
+                signal=f"leg {leg}" if effect.signal is None else f"{effect.signal}, leg {leg}",
+                parameters=tuple(f"{p}:{leg}" for p in effect.parameters),
+                title=f"{effect.title}, in leg {leg}",
+            )
+
+
+@cache
+def catalogue(kind: str = "cylinder") -> tuple[Effect, ...]:
+    """Every hypothesis for one kind of rig, in the order of the file. KeyError if one names an unknown parameter."""
+    name = "cylinder.toml" if kind == "cylinder" else "pneumatic.toml"
+    entries = [e for e in _read(name)["effect"] if kind in e.get("kinds", [kind])]
+    legs: Sequence[str] = ()
+    if kind == "platform":
+        more = _read("platform.toml")
+        entries, legs = entries + more["effect"], more["legs"]
+    effects = tuple(e for entry in entries for e in _effects(entry))
+    effects += tuple(_in_one_leg(effects, legs))
+    for effect in effects:
+        for parameter in effect.parameters:
+            if common_parameter(parameter) not in PARAMETERS:
+                raise KeyError(f"{name}: {effect.id} names the unknown parameter {parameter}")
+    return effects
+
+
+def _read(name: str) -> dict[str, Any]:
+    return tomllib.loads(files("sms.diagnosis.effects").joinpath(name).read_text(encoding="utf-8"))
+
+
+def effects_of(rig: Rig) -> tuple[Effect, ...]:
+    """The hypotheses that stand for a simulated rig with its laws."""
+    control = rig.control
+    controller = control.law if control.controller == "simulated" else "recorded"
+    return tuple(
+        e
+        for e in catalogue(rig.kind)
+        if e.chambers in (None, rig.model.chambers) and e.controller in (None, controller)
+    )

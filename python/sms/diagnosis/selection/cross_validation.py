@@ -1,0 +1,80 @@
+"""Judgement of an effect that the records kept aside do not feel: friction at high speed, and they are slow.
+
+Such records can speak neither for it nor against it. What is left is to hold the fitted records against each other: the
+effect's size comes from a part of them, and has to predict the rest. A part is a record, where more than one feels the
+effect; else every other window of all. As on unseen records, what is known may move within what is declared, and the
+causes are held. Each part is one linear step away from the fit to all, so that nothing is simulated again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sms.arrays import Array, Index
+from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, unseen
+from sms.estimation.block_statistics import interval, resampled, weighted_ms
+from sms.estimation.windows import Runs
+
+
+def change_on_validation(trial: Fitted, current: Fitted, data: Data) -> float:
+    """By how much the records kept aside change with an effect: mean square, in units of the declared noise."""
+    return float(np.mean((unseen(trial, data) - unseen(current, data)) ** 2))
+
+
+def objection(
+    trial: Fitted, current: Fitted, data: Data, floor: float, rng: np.random.Generator
+) -> str:
+    """Why the fitted records, held against each other, do not have the effect; empty if they do.
+
+    floor: mean square of the noise. It must help with 95 percent confidence, be worth more than what two honest
+    descriptions of one machine differ by, and make no record worse by as much.
+    """
+    runs = data.identify
+    assert isinstance(runs, Runs)
+    least = runs.kind.honest[0] * floor
+    parts = _parts(trial.fit.residual - current.fit.residual, runs, least)
+    before, after = predicted(current, parts) ** 2, predicted(trial, parts) ** 2
+    counts = resampled(runs.record, runs.block, rng)
+    gain = weighted_ms(before, runs.block, counts) - weighted_ms(after, runs.block, counts)
+    worth = before - after
+    if interval(gain)[0] <= 0.0:
+        return "the records it has not seen do not feel it, and those that do disagree on its size"
+    if float(np.mean(worth)) < least:
+        return "the records it has not seen do not feel it, and to those that do it is worth little"
+    for number, run in enumerate(runs.motions):
+        if float(np.mean(worth[runs.record == number])) < -least:
+            return (
+                "the records it has not seen do not feel it, and with the size that the others ask "
+                f"for it makes '{run.name}' worse"
+            )
+    return ""
+
+
+def _parts(change: Array, runs: Runs, least: float) -> Index:
+    """(rows,): which part a row belongs to, from how each record changes with the effect."""
+    of_record = [np.mean(change[runs.record == r] ** 2) for r in range(len(runs.motions))]
+    return runs.record if sum(c > least for c in of_record) > 1 else runs.block % 2
+
+
+def predicted(fitted: Fitted, parts: Index) -> Array:
+    """(rows,) residuals: each part by the causes' sizes that the others ask for, what is known free in it."""
+    free, residual = nuisance_of(fitted), fitted.fit.residual
+    held = {n for cause in fitted.hypothesis.causes for n in cause.parameters}
+    cause = np.array([n in held for n in free.names], dtype=np.bool_)
+    out = np.empty(len(residual))
+    for part in np.unique(parts):
+        rows = parts == part
+        step = _step(free.jacobian[~rows], residual[~rows], free.pull, free.off)
+        moved = residual[rows] + free.jacobian[rows][:, cause] @ step[cause]
+        known = free.jacobian[rows][:, ~cause]
+        out[rows] = moved + known @ _step(known, moved, free.pull[~cause], free.off[~cause])
+    return out
+
+
+def _step(jacobian: Array, residual: Array, pull: Array, off: Array) -> Array:
+    """(k,): the step that minimises |residual + jacobian step|^2 + |pull (off + step)|^2."""
+    stacked = np.vstack([jacobian, np.diag(pull)])
+    scale = np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
+    target = -np.concatenate([residual, pull * off])
+    found = np.linalg.lstsq(stacked / scale, target, rcond=1e-10)[0]
+    return np.asarray(found / scale)

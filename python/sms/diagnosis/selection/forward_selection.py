@@ -1,0 +1,115 @@
+"""Rounds of the search until nothing more is found, and the verdict on what they brought."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sms.diagnosis.adequacy.repeatability import Repeatability, repeatability
+from sms.diagnosis.effects.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted, residual_of, unseen
+from sms.diagnosis.result import Verdict
+from sms.diagnosis.selection.backward_elimination import backward_elimination
+from sms.diagnosis.selection.candidates import Trial, try_effects
+from sms.diagnosis.selection.validation import Yardstick, ambiguity_group, judge
+from sms.diagnosis.thresholds import MOST_CAUSES, UNKNOWN_CHANCE, UNKNOWN_OF_NOISE, UNKNOWN_SHARE
+from sms.rigs.cylinder import Comparison
+
+Progress = Callable[[str, float], None]
+"""Called with what is being done and the share that is done, 0..1."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round: every trial in it, and those that the data cannot tell from the best; or none."""
+
+    trials: list[Trial]
+    members: list[Trial]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the rounds brought."""
+
+    final: Fitted
+    rounds: list[Round]
+    found: list[list[Trial]]
+    """One class of trials for each cause; the first of it stands for it in the final model."""
+    named: bool = True
+    """False when so much is left that none of what was found is named."""
+
+    @property
+    def groups(self) -> list[list[Trial]]:
+        """What was found, if it is named."""
+        return self.found if self.named else []
+
+
+def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatability:
+    """How much of a model's error on the validate records repeats from stroke to stroke."""
+    v = data.validate
+    assert isinstance(v, Comparison)
+    return repeatability(
+        residual_of(v, fitted.params),
+        v.record,
+        v.stroke,
+        v.inputs["extension [m]"],
+        v.inputs["direction"],
+        rng,
+    )
+
+
+def forward_selection(
+    baseline: Fitted,
+    data: Data,
+    effects: Sequence[Effect],
+    floor: float,
+    rng: np.random.Generator,
+    progress: Progress,
+    enough: Callable[[Fitted], bool] = lambda fitted: False,
+) -> Outcome:
+    """Until nothing more is found: the best effect joins the model, with those that look alike.
+
+    Where a simulation is held against the records, a rival of an earlier cause may come to join it, and in the end all
+    causes are judged in the presence of each other.
+
+    floor: mean square of what no model of the state explains. enough: whether a model leaves so little that nothing
+    more is looked for.
+    """
+    original = float(np.mean(unseen(baseline, data) ** 2))
+    yardstick = Yardstick(original, floor)
+    current, rounds = baseline, []
+    remaining = list(effects)
+    for number in range(1, MOST_CAUSES + 1):
+        if not remaining or enough(current):
+            break
+        done = 0.1 + 0.75 * number / (MOST_CAUSES + 1)
+        progress(f"round {number}: {len(remaining)} effects", done)
+        trials = try_effects(current, data, remaining, rng)
+        judge(trials, current, data, yardstick, rng)
+        members = ambiguity_group(trials, current, data, rng)
+        rounds.append(Round(trials, members))
+        if not members:
+            break
+        current = members[0].fitted
+        out = members[:1] if data.identify.whitened else members
+        remaining = [e for e in remaining if e.key not in {m.effect.key for m in out}]
+    found = [r.members for r in rounds if r.members]
+    if data.identify.whitened and found:
+        found, current = backward_elimination(found, baseline, data)
+    return Outcome(current, rounds, found)
+
+
+def decide(outcome: Outcome, before: Repeatability, after: Repeatability) -> Verdict:
+    """One of the verdicts, data-fault aside."""
+    least = max(UNKNOWN_OF_NOISE * after.stroke, UNKNOWN_SHARE * before.systematic)
+    repeats = after.repeats > least and after.repeats_p_value < UNKNOWN_CHANCE
+    drifts = after.drift > least and after.drift_p_value < UNKNOWN_CHANCE
+    if repeats or drifts:
+        return "unknown"
+    if not outcome.groups:
+        return "no-evidence"
+    if len(outcome.groups) > 1:
+        return "combination"
+    return "cause" if len(outcome.groups[0]) == 1 else "class"

@@ -1,0 +1,329 @@
+"""The method on records that a simulation is held against: tank, bench, platform.
+
+The steps are those of pipeline.py and the search is the same; what differs is the unit of judgement (a window simulated
+from its own initial state, not a stroke), the noise (declared), and the question of where an error comes from (hidden
+inputs in the equations, localisation/unknown_inputs.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sms.arrays import Array
+from sms.diagnosis.adequacy.hysteresis import Hysteresis
+from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, explained, lack_of_fit, small
+from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
+from sms.diagnosis.adequacy.record_consistency import Inconsistency, inconsistency
+from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
+from sms.diagnosis.adequacy.verdict import consistent, decide, inconstancy_of
+from sms.diagnosis.design.closed_loop_performance import in_use
+from sms.diagnosis.design.next_experiment import next_experiment
+from sms.diagnosis.effects.catalogue import Effect, effects_of
+from sms.diagnosis.evidence import candidates_of, cause_from, gains_on, value_of
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    baseline_hypothesis,
+    fit,
+    nuisance_of,
+    refitted,
+    refitted_on,
+)
+from sms.diagnosis.localisation.empirical_term import empirical_of
+from sms.diagnosis.localisation.equation_error import fed_equations
+from sms.diagnosis.localisation.residual_spectrum import symptoms_of
+from sms.diagnosis.localisation.unknown_inputs import estimate_unknown_inputs
+from sms.diagnosis.result import (
+    Cause,
+    Diagnosis,
+    FedEquations,
+    Gain,
+    Hidden,
+    NotTestable,
+    ParameterValue,
+    Series,
+    Verdict,
+)
+from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.forward_selection import Outcome, Progress, forward_selection
+from sms.diagnosis.selection.identifiability import identifiable
+from sms.estimation.kind import Kind
+from sms.estimation.noise import noise_of
+from sms.estimation.run import Run, make_run
+from sms.estimation.windows import Runs
+from sms.io.errors import InputError
+from sms.io.records import Record
+from sms.io.rig import Rig
+from sms.report.wording_simulated import (
+    conclusion,
+    nearest_in_words,
+    sentence,
+    sentence_of_inconsistency,
+    words_of_inconsistency,
+)
+from sms.rigs.kinds import KINDS, kind_of
+
+
+@dataclass(frozen=True)
+class Case:
+    """Everything the steps brought."""
+
+    data: Data
+    baseline: Fitted
+    outcome: Outcome
+    before: LackOfFit
+    after: LackOfFit
+    blind: Sequence[NotTestable]
+    verdict: Verdict
+    inconsistency: Inconsistency | None = None
+    """With the verdict data-fault."""
+    inconstancy: Inconstancy | Hysteresis | None = None
+    """What speaks against the nearest explanation, with the verdict unknown."""
+
+    @property
+    def final(self) -> Fitted:
+        """The model that the answer stands for: the baseline where nothing is named."""
+        return self.outcome.final if self.outcome.named else self.baseline
+
+    def where(self, rng: np.random.Generator) -> Hidden:
+        """Which equation the baseline's error comes from, by hidden inputs in the simulation."""
+        return _hidden(self.baseline, self.data, self.before, rng)
+
+    def fed(self, rng: np.random.Generator) -> FedEquations | None:
+        """The same with each equation fed with measured signals; None for a kind without such equations."""
+        runs = self.data.identify
+        assert isinstance(runs, Runs)
+        return fed_equations(runs, self.baseline, rng)
+
+
+def make_data(rig: Rig, records: Sequence[Record]) -> Data:
+    """The records by role, as the core's problems."""
+    kind = kind_of(rig)
+    runs = [make_run(rig, record) for record in records]
+    return split(rig, kind, runs, noise_of(rig, kind, runs))
+
+
+def split(rig: Rig, kind: Kind, runs: Sequence[Run], noise: dict[str, float]) -> Data:
+    """Runs by role."""
+
+    def of(role: str) -> Runs:
+        return Runs(rig, tuple(r for r in runs if r.role == role), noise, kind)
+
+    kept_out = of("test") if any(r.role == "test" for r in runs) else None
+    return Data(rig, of("identify"), of("validate"), kept_out)
+
+
+def diagnose_plant(
+    rig: Rig,
+    records: Sequence[Record],
+    blank: Diagnosis,
+    rng: np.random.Generator,
+    progress: Progress,
+    empirical: bool = False,
+) -> Diagnosis:
+    """From checked records to an answer. InputError for a kind of rig that cannot be simulated against records yet."""
+    if rig.kind not in KINDS:
+        raise InputError(
+            f"{rig.path}: records of a {rig.kind} can be read and checked, but not diagnosed yet; "
+            f"what can be: cylinder, {', '.join(KINDS)}"
+        )
+    case = investigate(make_data(rig, records), effects_of(rig), rng, progress)
+    return complete(blank, case, rng, progress, empirical)
+
+
+def investigate(
+    data: Data, effects: Sequence[Effect], rng: np.random.Generator, progress: Progress
+) -> Case:
+    """Baseline, rounds and verdict: all that a trial needs."""
+    progress("fitting the baseline", 0.05)
+    baseline = fit(baseline_hypothesis(data, effects), data.identify)
+    progress("looking which effects can be seen", 0.15)
+    able, blind = identifiable(baseline, data, effects)
+    before = lack_of_fit(baseline, data)
+
+    def enough(fitted: Fitted) -> bool:
+        left = lack_of_fit(fitted, data)
+        return small(left) and (fitted is baseline or explained(before, left))
+
+    outcome = forward_selection(
+        baseline,
+        data,
+        able,
+        float(np.mean(before.floor)),
+        rng,
+        progress,
+        enough,
+    )
+    after = lack_of_fit(outcome.final, data)
+    verdict = decide(outcome, before, after)
+    found = None
+    if verdict == "unknown" or not all(
+        consistent(c[0], outcome.final, data) for c in outcome.groups
+    ):
+        found = inconsistency(baseline, data, able, before.floor)
+    other = inconstancy_of(outcome, data)
+    if outcome.groups and other is not None and verdict != "no-evidence":
+        verdict = "unknown"
+    if found is not None:
+        verdict = "data-fault"
+    if verdict in ("unknown", "data-fault"):
+        outcome = replace(outcome, named=False)
+    return Case(data, baseline, outcome, before, after, blind, verdict, found, other)
+
+
+def complete(
+    blank: Diagnosis,
+    case: Case,
+    rng: np.random.Generator,
+    progress: Progress,
+    empirical: bool = False,
+) -> Diagnosis:
+    """The whole answer, in numbers and in words; `empirical` asks for the curve of an unknown as a term."""
+    data, baseline, final = case.data, case.baseline, case.final
+    causes = tuple(_cause(members, case) for members in case.outcome.groups)
+    progress("asking which equation is wrong", 0.85)
+    hidden, fed = case.where(rng), case.fed(np.random.default_rng(blank.seed))
+    left = _hidden(final, data, case.after, rng) if causes else None
+    gain = _gains(baseline, final, data, case.after.floor, rng)
+    curve = None
+    if empirical and case.verdict == "unknown":
+        progress("measuring what the curve of the unknown is worth", 0.88)
+        curve = empirical_of(baseline, data, hidden.shape, case.before.floor, rng)
+    progress("choosing the next experiment", 0.9)
+    classes = [[m.effect for m in members] for members in case.outcome.groups]
+    unfelt = [members[0].effect for members in case.outcome.groups if members[0].cross_validated]
+    start = baseline.hypothesis.start
+    answer = replace(
+        blank,
+        verdict=case.verdict,
+        causes=causes,
+        candidates=candidates_of(case.outcome.rounds),
+        not_testable=tuple(case.blind),
+        symptoms=symptoms_of(baseline, data, case.before.floor),
+        gain=gain,
+        in_use=in_use(data.rig, baseline.params, final.params) if causes else (),
+        hidden=hidden,
+        fed=fed,
+        hidden_left=left,
+        empirical=curve,
+        noise_floor={},
+        baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
+        next_experiment=next_experiment(case.verdict, classes, final, data, hidden, unfelt),
+        series=_all_series(case),
+    )
+    return _with_words(answer, case, hidden)
+
+
+def _with_words(answer: Diagnosis, case: Case, hidden: Hidden) -> Diagnosis:
+    """The answer's numbers as sentences, and what the records themselves have against each other as a finding."""
+    table, nearest = case.data.rig.table, ""
+    if case.outcome.found:
+        effect, law = case.outcome.found[0][0].effect, case.inconstancy
+        nearest = nearest_in_words(effect, law, case.before, case.after, table)
+    findings, said = answer.findings, sentence(case.verdict, answer.causes, hidden)
+    if case.inconsistency is not None:
+        named = words_of_inconsistency(case.inconsistency, case.data.rig.path.name)
+        findings, said = (*findings, named), sentence_of_inconsistency(case.inconsistency)
+    concluded = conclusion(
+        case.verdict,
+        answer.causes,
+        answer.gain,
+        hidden,
+        answer.fed,
+        answer.hidden_left,
+        case.before,
+        case.after,
+        nearest,
+    )
+    return replace(answer, findings=findings, sentence=said, conclusion=concluded)
+
+
+# ---- causes ------------------------------------------------------------
+
+
+def _cause(members: list[Trial], case: Case) -> Cause:
+    data, final = case.data, case.outcome.final
+
+    def found(m: Trial) -> tuple[ParameterValue, ...]:
+        return (found_value(final if m is members[0] else m.fitted, m.effect, data),)
+
+    each = record_by_record(final, members[0].effect, data)
+    return cause_from(members, found, {record: value for record, (value, _) in each.items()})
+
+
+# ---- gain, blocks, curves ------------------------------------------------------------
+
+
+def _gains(
+    baseline: Fitted, final: Fitted, data: Data, floor: Array, rng: np.random.Generator
+) -> tuple[Gain, ...]:
+    """What the extension is worth on each record it has not seen, and each signal, in the signal's unit."""
+    out: list[Gain] = []
+    assert isinstance(data.validate, Runs)
+    before, after = refitted(baseline, data), refitted(final, data)
+    out += gains_on(data.validate, before.fit.residual, after.fit.residual, floor, rng)
+    if isinstance(data.test, Runs):
+        before, after = (refitted_on(f, data.test) for f in (baseline, final))
+        out += gains_on(data.test, before.fit.residual, after.fit.residual, floor, rng)
+    return tuple(out)
+
+
+def _hidden(fitted: Fitted, data: Data, excess: LackOfFit, rng: np.random.Generator) -> Hidden:
+    """Which equation is wrong, from the identify records."""
+    runs = data.identify
+    assert isinstance(runs, Runs)
+    rows = len(runs.channel) / len(runs.channels)
+    chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
+    return estimate_unknown_inputs(
+        runs, nuisance_of(fitted), fitted.fit.residual, fitted.params, chi_square, rng
+    )
+
+
+def _all_series(case: Case) -> tuple[Series, ...]:
+    data = case.data
+    parts = [p for p in (data.identify, data.validate, data.test) if isinstance(p, Runs)]
+    return tuple(s for part in parts for s in _series(part, case.baseline, case.final, data))
+
+
+def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Series]:
+    """Measured and predicted curves, window by window from the best initial states."""
+    if part is data.identify:
+        base, extended = baseline.params, final.params
+    elif part is data.validate:
+        base, extended = refitted(baseline, data).params, refitted(final, data).params
+    else:
+        base, extended = refitted_on(baseline, part).params, refitted_on(final, part).params
+    errors = part.problem.errors(base), part.problem.errors(extended)
+    out = []
+    for number, run in enumerate(part.motions):
+        for c, channel in enumerate(part.channels):
+            rows = (part.record == number) & (part.channel == c)
+            measured = run.signals[channel]
+            used = np.zeros(len(run.time), dtype=np.bool_)
+            used[part.sample[rows]] = True
+            base_curve, extended_curve = measured.copy(), measured.copy()
+            base_curve[used] += errors[0][rows] * part.noise[channel]
+            extended_curve[used] += errors[1][rows] * part.noise[channel]
+            out.append(
+                Series(
+                    run.name,
+                    run.role,
+                    channel,
+                    part.kind.units[channel],
+                    run.time,
+                    measured,
+                    base_curve,
+                    extended_curve,
+                    used,
+                    _inputs(part.kind, run),
+                )
+            )
+    return out
+
+
+def _inputs(kind: Kind, run: Run) -> dict[str, Array]:
+    found = {f"{n} [{kind.units[n]}]": run.signals[n] for n in kind.shown if n in run.signals}
+    return found | kind.derived(run) | {"time [s]": run.time - run.time[0]}

@@ -1,0 +1,185 @@
+"""Every tuning constant of the diagnosis, with its origin in a word.
+
+Convention: customary in statistics. Published: the dissertation. Blind trials: set on trials with hidden effects
+(docs/trials.md), so that right causes pass and imitations do not. Judgement: an engineer's choice that nothing here
+measures. Run time, memory, numerics: what the computation asks for.
+
+What depends on the rig stands with it (estimation/kind.py: `honest`, `short`); what belongs to a least-squares fit with
+the fit (estimation/least_squares.py, block_statistics.py).
+"""
+
+from __future__ import annotations
+
+# ---- Excitation: what a motion must contain --------------------------------------------------------
+
+PRESSURE_LEVELS = 1.5
+"""Ratio of the largest to the smallest mean pressure of the records. Judgement: half as much again."""
+SPEED_RATIO = 10.0
+"""Ratio of fast to slow within one record. Judgement: a decade tells a slope or a Stribeck curve from a constant."""
+TRAVEL_SHARE = 0.25
+"""Share of the stroke that is travelled. Judgement."""
+FAST_MOTION = 0.2
+"""m/s: where friction was seen to rise again (dissertation, section 6.3)."""
+LEAST_ACCELERATION = 0.5
+"""m/s^2: below it the inertia of a cylinder's own parts is lost in its friction. Judgement."""
+SMALL_OPENING = 1.0
+"""V from the centre: up to here a dead band acts. Judgement."""
+FAST_COMMAND = 5.0
+"""V/s: slower commands hide a lag of milliseconds. Judgement."""
+
+# ---- Identifiability -------------------------------------------------------------------------------
+
+DETECTION = 3.0
+"""Standard errors at which an effect counts as detectable. Convention: three sigma."""
+
+# ---- Score test and the choice of what is fitted ---------------------------------------------------
+
+SIGNIFICANT = 0.01
+"""Largest chance, over all candidates of a round together, of naming one on data without any effect. Convention: 1 %.
+"""
+MOST_FITS = 5
+"""Effects of a round that are fitted in full, each fit a simulation of every record. Run time."""
+WORTH_A_FIT = 0.3
+"""Share of the largest expected reduction of chi-square that an effect must promise to be fitted. Run time."""
+FAR = 10.0
+"""Chi-square per row from which less has to be promised: one linear step says little of a long way. Blind trials."""
+ALIKE = 0.95
+"""Cosine of two sensitivities from which two effects cannot be told apart by them. Judgement."""
+WORTH_A_LOOK = 0.8
+"""Share of the best fit's reduction of chi-square that a fit must reach to be judged on validation records. Run time.
+"""
+
+# ---- Multistart ------------------------------------------------------------------------------------
+
+LARGE_ERROR = 0.5
+"""Of the noise's chi-square: what has to be left beyond it. Judgement."""
+MOST_LEFT = 0.5
+"""Of what is beyond the noise: with more left by all that were fitted, other initial values are tried. Judgement."""
+STARTED_AFAR = 3
+"""Effects that are fitted from several initial values: those that promise most. Run time."""
+MULTIPLES = (0.2, 0.5, 2.0, 5.0)
+"""Of the declared value: initial values of a shifted parameter. Judgement: up to a factor of five either way."""
+
+# ---- Judgement on the validation records -----------------------------------------------------------
+
+WORTH = 0.01
+"""Least share of the original squared error beyond the noise floor that a cause must take. Judgement."""
+WORTH_OF_NOISE = 0.02
+"""The same as a share of the noise floor itself, for a machine with hardly any error beyond it. Judgement."""
+WORTH_OF_LEFT = 0.5
+"""Share of what the present model leaves beyond the noise that is worth a name in any case. Judgement."""
+TELLS_APART = 3.0
+"""Standard errors of the difference of two rivals, over windows, from which the worse is out. Convention: three sigma.
+"""
+NEARLY_EVERY = 0.9
+"""Share of the windows in which a rival leaves more. Blind trials."""
+TELLS_ALIKE_APART = 0.05
+"""Of the best one's reduction of chi-square: what a rival with the same sensitivity must leave more. Blind trials.
+
+A machine differs from any model of it, and a small part of that falls in the direction in which two rivals differ. But
+not more than the best leaves, or any fair description of a machine would: where that is less, it is enough.
+"""
+
+# ---- Forward selection and backward elimination ----------------------------------------------------
+
+MOST_CAUSES = 4
+"""More are not named. Judgement: with so many terms something always fits."""
+UNKNOWN_SHARE = 0.2
+"""Of the systematic part of the baseline's error: with more left, the verdict is unknown. Judgement."""
+UNKNOWN_OF_NOISE = 0.05
+"""Least systematic error, as a share of the noise floor's square, for the verdict unknown. Judgement."""
+UNKNOWN_CHANCE = 0.005
+"""Largest chance of calling healthy data unknown, for each of two tests. Convention: 1 % in all."""
+NEARLY_AS_GOOD = 0.9
+"""Of the best rival's reduction of chi-square: what another rival has to reach. Judgement."""
+IDLE = 0.02
+"""Of the reduction by all causes: one that adds less to the others has stood in for them, and is dropped. Judgement.
+
+Unless it takes half of what the others leave: beside a very large cause a second one is small and real.
+"""
+
+# ---- Lack of fit -----------------------------------------------------------------------------------
+
+LEFT = 0.1
+"""Of the baseline's lack of fit: with more left, the verdict is unknown. Blind trials: right causes leave some
+percent.
+
+The more, the further the real law is from the core's.
+"""
+
+# ---- Parameter constancy and hysteresis ------------------------------------------------------------
+
+APART = 10.0
+"""Standard errors between the halves' sizes from which a law counts as another one. Blind trials."""
+APART_BY = 0.2
+"""Of the size itself, besides. Judgement: no law of friction or flow is right to the last tenth everywhere."""
+APART_IN_TIME = 0.15
+"""The same between halves of the moments. Blind trials: right causes leave 0.1."""
+PLAY = 0.02
+"""V to either side, for which the sensitivity is taken. Judgement: above a command's noise, below a dead band."""
+
+# ---- Record consistency ----------------------------------------------------------------------------
+
+TRIED_BY_RECORD = 3
+"""Effects that are fitted record by record: those that promise most. Run time."""
+EXPLAINS = 0.8
+"""Of the lack of fit: what one effect with a value of its own in each record has to take. Trials with bad input."""
+DIFFERS = 6.0
+"""Standard errors between two records' values. Trials with bad input."""
+DIFFERS_BY = 0.4
+"""Of the largest shift: by how much the values differ at the least. Trials with bad input."""
+
+# ---- Unknown inputs --------------------------------------------------------------------------------
+
+KNOTS = 21
+"""Knots per window of 1 s, 50 ms apart. Run time: the noise hides anything faster."""
+PIECES = 7
+"""Values of a function of one signal. Judgement."""
+MOVES = 20.0
+"""Standard deviations of its noise over which a signal must range. Judgement."""
+DRAWS = 199
+"""Resamples behind an interval. Convention: the 95 % limits are order statistics of 199."""
+CURVE_RIDGE = 1e-3
+"""Ridge of the curves, of the mean diagonal of their normal equations. Judgement."""
+MOST_ROWS = 16_000
+"""Rows of a sensitivity: with more, neighbouring samples are added up. Memory."""
+CANNOT = 0.01
+"""Of a sensitivity's square: what unknown inputs may miss. Judgement: a sensor's error or a delay they cannot make."""
+INPUT_RIDGE = 1e-6
+"""Ridge of the inputs at the knots, of the same. Numerics."""
+
+# ---- Equation error --------------------------------------------------------------------------------
+
+SMOOTHING = 0.05
+"""s: window of the local cubics. Judgement: the knots of the unknown inputs are as far apart."""
+AVERAGE = 0.1
+"""s: an error is the mean over this time. Judgement: two windows of the smoother."""
+STRETCH = 1.0
+"""s: the block that is resampled. As long as a window of the simulation."""
+ENDS = 0.1
+"""s left out at either end of a record, where the smoother is one-sided and the spool starts from rest. Judgement."""
+TOLERANCE = 5.0
+"""Mean square beyond the noise's, in the worst equation, from which shares are worth a word. Blind trials.
+
+Two fair descriptions of one machine differ by 1.5 in friction through rest; noise that is not white adds up to 4.
+"""
+
+# ---- Residual spectrum and period along the stroke -------------------------------------------------
+
+POWER_SHARE = 0.8
+"""Of the power beyond the noise: what lies below the frequency that is reported. Convention."""
+PERIODS_IN_TRAVEL = 5.0
+"""Least number of periods within the travel. Judgement."""
+SHORTEST_PERIOD = 1e-3
+"""m. Judgement: finer than any thread or tooth of the rig."""
+PROMINENCE = 4.0
+"""Peak over the median of the spectrum, in the mean over all records and directions. Judgement."""
+AGREEMENT = 0.05
+"""Relative difference of the period between records and directions. Judgement."""
+
+# ---- A model of one's own --------------------------------------------------------------------------
+
+FEWEST_WINDOWS = 6
+"""Windows of a role. Judgement: fewer give no scatter between windows."""
+DIFFERENCE = 1e-5
+"""Of a number's scale: the step of a central difference. Numerics: near the cube root of the rounding error."""

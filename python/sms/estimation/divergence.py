@@ -1,0 +1,64 @@
+"""A simulation that runs away, held within numbers.
+
+Records of another machine, or a rig file that is wrong by a factor, lead a fit to parameters at which a window's
+simulation grows without bound: its derivatives first, by a hundred decades within a second, then itself. Linear algebra
+ends there. Such a window tells where a fit must not go, and nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sms import _core
+from sms.arrays import Array
+from sms.estimation.problem import Window, WindowProblem
+
+LARGEST = 1e6
+"""Of a residual, in units of the noise: what no sensor's range holds."""
+STEEPEST = 1e100
+"""Of a derivative per unit of its parameter: its square is a number still."""
+
+
+@dataclass(frozen=True, eq=False)
+class WithinNumbers:
+    """A window problem whose windows that run away have large errors, and no slope."""
+
+    problem: WindowProblem
+
+    @property
+    def rows(self) -> int:
+        return self.problem.rows
+
+    @property
+    def windows(self) -> Sequence[Window]:
+        return self.problem.windows
+
+    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
+        """Residual (rows,) and Jacobian (rows, free), as WindowProblem has them; all of them finite."""
+        residual, jacobian = self.problem.evaluate(params, free)
+        return _held(residual), self._flat_where_steep(jacobian)
+
+    def errors(self, params: _core.Params) -> Array:
+        """(rows,), as WindowProblem has them; all of them finite."""
+        return _held(self.problem.errors(params))
+
+    def hidden(self, params: _core.Params, knots: int) -> Array:
+        """(rows, hidden inputs x knots), as WindowProblem has them; all of them finite."""
+        return self._flat_where_steep(self.problem.hidden(params, knots))
+
+    def _flat_where_steep(self, jacobian: Array) -> Array:
+        steep = np.any(~(np.abs(jacobian) < STEEPEST), axis=1)
+        if steep.any():
+            for w in self.windows:
+                rows = slice(w.row, w.row + w.rows)
+                if steep[rows].any():
+                    jacobian[rows] = 0.0
+        return jacobian
+
+
+def _held(residual: NDArray[np.float64]) -> Array:
+    return np.clip(np.nan_to_num(residual, nan=LARGEST), -LARGEST, LARGEST)

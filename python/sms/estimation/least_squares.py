@@ -1,0 +1,154 @@
+"""Least squares in few evaluations, for problems whose evaluation is a simulation of every window.
+
+Gauss-Newton with bounds: each step solves the linearised problem within the bounds exactly (bounded-variable least
+squares, Stark and Parker 1995), shortens it while it does not help, and stops when it promises or gains next to
+nothing. The residuals are in units of the noise, so that is a number: 0.5 of chi-square, and more for a model
+that misses by far more than the noise, whose last digit nobody reads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from sms import _core
+from sms.arrays import Array
+from sms.estimation.problem import Problem
+
+ENOUGH = 0.5
+"""Of chi-square, which is about one a row: what a step has to gain to be followed by another."""
+LEAST_SHARE, MOST_SHARE = 1e-4, 1e-2
+"""Of chi-square itself, besides: from a model at the noise to one that misses by ten times its variance."""
+MOST_STEPS = 12
+MOST_HALVINGS = 3
+
+
+class Solution(Protocol):
+    """What a fit brings, the core's or this one's."""
+
+    @property
+    def params(self) -> _core.Params: ...
+    @property
+    def residual(self) -> Array: ...
+    @property
+    def jacobian(self) -> Array: ...
+    @property
+    def at_bound(self) -> list[bool]: ...
+    @property
+    def converged(self) -> bool: ...
+
+
+@dataclass(frozen=True)
+class WindowFit:
+    """Residual (rows,) and Jacobian (rows, free) at the solution."""
+
+    params: _core.Params
+    residual: Array
+    jacobian: Array
+    at_bound: list[bool]
+    converged: bool
+
+
+@dataclass(frozen=True)
+class Free:
+    """A parameter that may move between two bounds, pulled to `centre` with the weight `pull` per unit."""
+
+    name: str
+    lower: float
+    upper: float
+    pull: float
+    centre: float
+
+    @property
+    def scale(self) -> float:
+        return 1.0 / self.pull if self.pull > 0.0 else max(abs(self.centre), 1e-3 * self.upper)
+
+
+def changed(params: _core.Params, names: list[str], values: Array) -> _core.Params:
+    """The same parameters but for some."""
+    copy = params.copy()
+    for name, value in zip(names, values, strict=True):
+        copy[name] = float(value)
+    return copy
+
+
+def fit_windows(problem: Problem, initial: _core.Params, free: list[Free]) -> WindowFit:
+    """Minimise |residual|^2 + sum (pull (value - centre))^2 within the bounds, from `initial`."""
+    names = [f.name for f in free]
+    scale = np.array([f.scale for f in free])
+    pull = np.array([f.pull for f in free]) * scale
+    lower = np.array([f.lower for f in free]) / scale
+    upper = np.array([f.upper for f in free]) / scale
+    centre = np.array([f.centre for f in free]) / scale
+    value = np.clip(np.array([initial[n] for n in names]) / scale, lower, upper)
+
+    def at(value: Array) -> _core.Params:
+        return changed(initial, names, value * scale)
+
+    def cost(residual: Array, value: Array) -> float:
+        return float(residual @ residual + np.sum((pull * (value - centre)) ** 2))
+
+    residual, jacobian = problem.evaluate(at(value), names)
+    converged = not free
+    for _ in range(MOST_STEPS if free else 0):
+        here = cost(residual, value)
+        little = ENOUGH + _worthless(residual, jacobian)
+        slope = jacobian * scale
+        step = _linear_step(slope, residual, pull, value - centre, lower - value, upper - value)
+        promised = here - cost(residual + slope @ step, value + step)
+        gained, length = 0.0, 1.0
+        for _ in range(MOST_HALVINGS + 1):
+            if promised * length * (2.0 - length) < little:
+                break
+            tried = np.clip(value + length * step, lower, upper)
+            after, _ = problem.evaluate(at(tried))
+            gained = here - cost(after, tried)
+            if gained > 0.0:
+                break
+            length *= 0.4
+        if gained > 0.0:
+            value = tried
+            residual, jacobian = problem.evaluate(at(value), names)
+        if gained < little:
+            converged = True
+            break
+    margin = 1e-6
+    held = [
+        bool(v <= a + margin or v >= b - margin)
+        for v, a, b in zip(value, lower, upper, strict=True)
+    ]
+    return WindowFit(at(value), np.asarray(residual), np.asarray(jacobian), held, converged)
+
+
+def _worthless(residual: Array, jacobian: Array) -> float:
+    """Of chi-square, what is next to nothing for a model that leaves so much where it has a slope at all."""
+    felt = residual[np.any(jacobian != 0.0, axis=1)]
+    if not felt.size:
+        return 0.0
+    left = float(felt @ felt)
+    share = 0.1 * MOST_SHARE * (left / felt.size - 1.0)
+    return min(max(LEAST_SHARE, share), MOST_SHARE) * left
+
+
+def _linear_step(
+    jacobian: Array, residual: Array, pull: Array, off: Array, low: Array, high: Array
+) -> Array:
+    """The step that minimises the linearised cost with low <= step <= high."""
+    stacked = np.vstack(
+        [np.column_stack([jacobian, residual]), np.column_stack([np.diag(pull), pull * off])]
+    )
+    r: Array = np.asarray(np.linalg.qr(stacked, mode="r"))
+    k = jacobian.shape[1]
+    damped = np.vstack([r[:k, :k], 1e-6 * np.diag(np.linalg.norm(r[:k, :k], axis=0) + 1e-12)])
+    target = np.concatenate([-r[:k, k], np.zeros(k)])
+    room = np.maximum(high - low, 1e-12)
+    found = lsq_linear(
+        damped,
+        target,
+        (np.minimum(low, 0.0) - 1e-12 * room, np.maximum(high, 0.0) + 1e-12 * room),
+        method="bvls",
+    )
+    return np.asarray(found.x)

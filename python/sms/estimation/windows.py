@@ -1,0 +1,113 @@
+"""Records of tank, bench and platform as the core's problem: a simulation held against them, window by window.
+
+The record is cut into windows of about a second, each simulated from an initial state that fits it best
+(libsms/estimation/shooting.hpp). What comes out is in units of the declared noise. A window is the block that
+judgements resample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sms.arrays import Array, Index
+from sms.estimation.divergence import WithinNumbers
+from sms.estimation.kind import Kind
+from sms.estimation.problem import WindowProblem
+from sms.estimation.run import Run
+from sms.io.rig import Rig
+from sms.io.signals import without_leg
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Several records as one problem of the core, with what a judgement needs to know of each row."""
+
+    rig: Rig
+    motions: tuple[Run, ...]
+    noise: dict[str, float]
+    kind: Kind
+
+    whitened = True
+    """Residuals are in units of the declared noise."""
+
+    @cached_property
+    def channels(self) -> tuple[str, ...]:
+        """The outputs that every record has."""
+        return tuple(s for s in self.kind.outputs if all(s in m.signals for m in self.motions))
+
+    @cached_property
+    def simulation(self) -> WindowProblem:
+        """The records as the core's problem."""
+        return self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+
+    @cached_property
+    def problem(self) -> WindowProblem:
+        """The same where it does not run away."""
+        return WithinNumbers(self.simulation)
+
+    @cached_property
+    def record(self) -> Index:
+        """(rows,): which record a row belongs to."""
+        return self._of_windows([w.record for w in self.problem.windows])
+
+    @cached_property
+    def block(self) -> Index:
+        """(rows,): which window a row belongs to."""
+        return self._of_windows(list(range(len(self.problem.windows))))
+
+    @cached_property
+    def sample(self) -> Index:
+        """(rows,): number of the sample in its record."""
+        parts = [
+            np.repeat(w.first + np.arange(w.samples), len(self.channels))
+            for w in self.problem.windows
+        ]
+        return np.concatenate(parts).astype(np.int64)
+
+    @cached_property
+    def channel(self) -> Index:
+        """(rows,): which output, as its place in `channels`."""
+        return np.arange(self.problem.rows, dtype=np.int64) % len(self.channels)
+
+    def _of_windows(self, values: list[int]) -> Index:
+        return np.repeat(np.array(values, dtype=np.int64), [w.rows for w in self.problem.windows])
+
+    def covariate(self, values: Sequence[Array]) -> Array:
+        """(rows,) of one array (n,) a record."""
+        out = np.empty(self.problem.rows)
+        for number, of_record in enumerate(values):
+            rows = self.record == number
+            out[rows] = of_record[self.sample[rows]]
+        return out
+
+    @cached_property
+    def inputs(self) -> dict[str, Array]:
+        """(rows,) each: the signals along which a residual may be arranged, SI."""
+        names = [n for n in self.motions[0].signals if all(n in m.signals for m in self.motions)]
+        found = {
+            f"{n} [{self.kind.units[n]}]": self.covariate([m.signals[n] for m in self.motions])
+            for n in names
+            if without_leg(n) != "setpoint"
+        }
+        derived = [self.kind.derived(m) for m in self.motions]
+        for name in derived[0]:
+            found[name] = self.covariate([d[name] for d in derived])
+        found["time [s]"] = self.covariate([m.time - m.time[0] for m in self.motions])
+        return found
+
+    def floor(self, residual: Array) -> Array:
+        """(channels,): mean square of what differs within `kind.short`, in units of the declared noise."""
+        out = np.empty(len(self.channels))
+        for c in range(len(self.channels)):
+            lag = max(1, round(self.kind.short / self.motions[0].step))
+            of_channel = residual[self.channel == c]
+            same = self.block[self.channel == c]
+            together = same[lag:] == same[:-lag]
+            out[c] = 0.5 * np.mean((of_channel[lag:] - of_channel[:-lag])[together] ** 2)
+            if self.channels[c] in self.kind.computed:
+                out[c] = max(out[c], 1.0)
+        return out

@@ -1,0 +1,218 @@
+"""The verdict on a simulated rig in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from sms.diagnosis.adequacy.hysteresis import Hysteresis
+from sms.diagnosis.adequacy.lack_of_fit import LackOfFit
+from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
+from sms.diagnosis.adequacy.record_consistency import Inconsistency
+from sms.diagnosis.effects.catalogue import Effect
+from sms.diagnosis.localisation.unknown_inputs import alike
+from sms.diagnosis.result import Cause, FedEquations, Finding, Gain, Hidden, Verdict
+from sms.parameters import Parameter
+from sms.report.wording import capital, chosen_again, explained, judged_by_cross_validation
+from sms.units_display import format_aligned, format_percent, format_quantity
+from sms.units_display import words as spaced
+
+
+def sentence(verdict: Verdict, causes: Sequence[Cause], hidden: Hidden) -> str:
+    """What a person reads first."""
+    if verdict == "no-evidence":
+        return (
+            "No evidence that the simulation is wrong: within its declared uncertainties the model explains these "
+            "records down to their noise."
+        )
+    if verdict == "unknown":
+        return (
+            "The simulation is wrong, and no effect of the catalogue explains how. "
+            f"The error comes from {block_in_words(hidden.equation)}; {shape_in_words(hidden)}."
+        )
+    if len(causes) == 1:
+        return f"The simulation misses {explained(causes[0])}."
+    listed = "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1))
+    return f"The simulation misses {listed}."
+
+
+def sentence_of_inconsistency(found: Inconsistency) -> str:
+    return (
+        "The records contradict each other: each is explained by itself, but no single model is right for all. "
+        f"The nearest explanation, {found.effect.title}, would need another size in each."
+    )
+
+
+def words_of_inconsistency(found: Inconsistency, rig: str) -> Finding:
+    """The finding, with the value that each record asks for."""
+    name = found.effect.parameters[0]
+    values = format_aligned([v for v, _ in found.values.values()], found.unit)
+    each = ", ".join(f"{v} in '{r}'" for r, v in zip(found.values, values, strict=True))
+    return Finding(
+        "error",
+        rig,
+        None,
+        found.effect.signal if found.effect.of_sensor else None,
+        f"the records contradict each other: with {found.effect.title}, {name} would be {each}",
+        "find out what was changed between the runs and state it as their conditions, or leave out the one at odds",
+    )
+
+
+def block_in_words(equation: str) -> str:
+    """ "force" -> "the balance of forces on the piston"."""
+    if equation == "force":
+        return "the balance of forces on the piston"
+    if equation == "command":
+        return "the controller, whose command is another than it should be"
+    if equation.startswith("flow"):
+        return f"the {equation.replace('flow', 'air flow')} (valve, tubes, leaks and heat look alike there)"
+    return f"the {equation.replace('_', ' ')}"
+
+
+def shape_in_words(hidden: Hidden) -> str:
+    """Along which signal the missing term is best drawn."""
+    shape = hidden.shape
+    signal = spaced(shape.signal.split(" [")[0])
+    return (
+        f"as a curve over {signal} it takes {format_percent(min(shape.share, 1.0))} of what is not noise "
+        f"({shape.equation.replace('_', ' ')})"
+    )
+
+
+def nearest_in_words(
+    nearest: Effect,
+    law: Inconstancy | Hysteresis | None,
+    before: LackOfFit,
+    after: LackOfFit,
+    table: Mapping[str, Parameter],
+) -> str:
+    """What comes closest to an unknown, and why it is not the answer."""
+    if law is None:
+        takes = 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)
+        return (
+            f"Nearest comes {nearest.title}, which takes {format_percent(takes)} of the error that is not noise: "
+            "not enough to be its cause."
+        )
+    name = law.effect.parameters[0]
+    if isinstance(law, Hysteresis):
+        alone, beside = format_aligned([law.alone, law.beside[0]], table[name].unit, name)
+        return (
+            f"Nearest comes {law.effect.title}, but its size would be {alone} alone and {beside} beside a play of "
+            f"{format_quantity(law.play[0], 'V')} between command and spool: what the valve does depends on the way "
+            "that the command came."
+        )
+    signal, unit = (
+        law.signal.removesuffix("]").split(" [") if "[" in law.signal else (law.signal, "1")
+    )
+    low, high = format_aligned([law.low[0], law.high[0]], table[name].unit, name)
+    return (
+        f"Nearest comes {law.effect.title}, but its size would be {low} where {spaced(signal)} is below "
+        f"{format_quantity(law.cut, unit)} and {high} above: it follows another law."
+    )
+
+
+def conclusion(
+    verdict: Verdict,
+    causes: Sequence[Cause],
+    gain: Sequence[Gain],
+    hidden: Hidden,
+    fed: FedEquations | None,
+    left: Hidden | None,
+    before: LackOfFit,
+    after: LackOfFit,
+    nearest: str = "",
+) -> tuple[str, ...]:
+    """What an engineer would conclude, a sentence each; `nearest` is what comes closest to an unknown."""
+    out = []
+    if verdict in ("cause", "class", "combination"):
+        out += [judged_by_cross_validation(c) for c in causes if c.crosswise]
+        out += [] if all(c.crosswise for c in causes) else [_worth(gain)]
+        shares = format_percent(max(0.0, 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)))
+        out.append(f"Of the error that is not noise, {shares} is explained.")
+        out.append(chosen_again(causes, "windows"))
+    elif verdict == "unknown":
+        others = sorted(hidden.shares.items(), key=lambda item: -item[1][0])[:3]
+        listed = ", ".join(f"{name.replace('_', ' ')} {format_percent(s[0])}" for name, s in others)
+        out.append(f"What a hidden term in each equation would take alone: {listed}.")
+        out += [nearest] if nearest else []
+    if verdict != "no-evidence" and fed is not None:
+        out.append(two_ways(hidden, fed))
+    if causes:
+        inside = block_of(causes[0].block)
+        if not any(word in hidden.equation for word in inside):
+            out.append(
+                f"{capital(causes[0].title)} acts elsewhere than where a hidden term takes most "
+                f"({hidden.equation.replace('_', ' ')}): look at both."
+            )
+    return tuple(out)
+
+
+def agree(hidden: Hidden, fed: FedEquations) -> bool:
+    """Whether the second way has the first one's equation too: as its largest, or as one that may be.
+
+    What a hidden input has in all legs alike ("force") is what the second way has in each of them.
+    """
+    share = {e.equation: e.share for e in fed.equations}
+    for name, numbers in alike(list(share)).items():
+        of_legs = [fed.equations[n].share for n in numbers]
+        share[name] = (
+            sum(s[0] for s in of_legs),
+            sum(s[1] for s in of_legs),
+            sum(s[2] for s in of_legs),
+        )
+    own = share.get(hidden.equation)
+    return own is not None and own[2] >= share[fed.equation][1]
+
+
+def two_ways(hidden: Hidden, fed: FedEquations) -> str:
+    """What the equations say when each is fed with measured signals, and whether the hidden inputs say the same."""
+    if not fed.beyond_noise:
+        return (
+            "Fed with measured signals, no equation shows more by itself than noise and what two honest descriptions "
+            "of one machine differ by; only the simulation, which adds errors up, does."
+        )
+    most = next(e for e in fed.equations if e.equation == fed.equation)
+    size, noise = format_aligned([most.rms, most.noise], most.unit)
+    found = (
+        f"Fed with measured signals, each equation by itself, {spaced(most.equation)} is off by {size} with a noise of "
+        f"{noise} and has {format_percent(most.share[0])} of what is not noise"
+    )
+    if hidden.equation == "command":
+        return f"{found}. The controller, to which hidden inputs in the simulation point, is none of these equations."
+    if agree(hidden, fed):
+        same = hidden.equation == fed.equation
+        where = "there too" if same else f"to {spaced(hidden.equation)}, which is as likely here"
+        return f"{found}; hidden inputs in the simulation point {where}: the two ways agree."
+    readings = [e for e in (fed.equation, hidden.equation) if e.startswith("reading of ")]
+    suspect = (
+        f"that of {spaced(readings[0].removeprefix('reading of '))} first"
+        if readings
+        else "or a delay between two of them"
+    )
+    return (
+        f"{found}; hidden inputs in the simulation point to {spaced(hidden.equation)}. The two ways point to different "
+        f"equations: then a reading is suspect, {suspect}."
+    )
+
+
+def block_of(block: str) -> tuple[str, ...]:
+    """Which equations of the simulation a block of the catalogue can be seen in."""
+    known = {
+        "force": ("force",),
+        "valve": ("flow",),
+        "supply": ("flow", "supply"),
+        "chamber": ("flow", "force"),
+        "control": ("flow", "command"),
+        "sensors": ("reading", "force", "flow"),
+        "mechanism": ("reading", "force"),
+    }
+    return known.get(block, (block,))
+
+
+def _worth(gain: Sequence[Gain]) -> str:
+    """The signals' errors before and after, the worst record of each."""
+    parts = []
+    for signal in dict.fromkeys(g.signal for g in gain):
+        worst = max((g for g in gain if g.signal == signal), key=lambda g: g.baseline_rms)
+        old, new = format_aligned([worst.baseline_rms, worst.extended_rms], worst.unit)
+        parts.append(f"{spaced(signal)} {old} to {new}")
+    return f"On records the fit has not seen, the error within a window falls: {', '.join(parts)}."

@@ -1,0 +1,218 @@
+"""The kind "tank": a vessel behind one port of the valve, its pressure measured, perhaps its temperature."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from sms import _core, simulation
+from sms.arrays import Array
+from sms.estimation.kind import Equations, Experiment, Kind
+from sms.estimation.run import Run
+from sms.io.rig import Rig
+from sms.rigs.pneumatic import WINDOW
+
+LONGEST_STEP = 1e-3
+"""s: of the integration; the spool of 65 Hz needs it."""
+HIDDEN = {"flow of the tank": "kg/s", "supply pressure": "Pa"}
+OUTPUTS = ("tank_pressure", "tank_temperature", "supply_pressure")
+
+
+def make_problem(
+    rig: Rig, runs: Sequence[Run], channels: Sequence[str], noise: Mapping[str, float]
+) -> _core.TankPlantProblem:
+    """The records as the core's problem."""
+    return _core.TankPlantProblem(
+        records=[_record(run, channels) for run in runs],
+        noise={s: noise[s] for s in OUTPUTS},
+        valve=rig.model.valve,
+        chambers=rig.model.chambers,
+        window=WINDOW,
+        longest_step=LONGEST_STEP,
+        threads=int(os.environ.get("SMS_THREADS", "2")),
+    )
+
+
+def _record(run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
+    def measured(signal: str) -> Array:
+        return run.signals[signal] if signal in channels else np.empty(0)
+
+    return _core.TankPlantRecord(
+        step=run.step,
+        command=run.signals["valve_command"],
+        pressure=run.signals["tank_pressure"],
+        temperature=measured("tank_temperature"),
+        supply_pressure=measured("supply_pressure"),
+        conditions=run.conditions,
+    )
+
+
+# ---- equations fed with measured signals ---------------------------------------------------------
+
+
+def equation_units(channels: Sequence[str]) -> dict[str, str]:
+    """The air in the tank, and what thermometer and reservoir add where they are read."""
+    units = {"flow of the tank": "kg/s"}
+    if "tank_temperature" in channels:
+        units["reading of tank_temperature"] = "K"
+    if "supply_pressure" in channels:
+        units["supply pressure"] = "Pa"
+    return units
+
+
+def make_equations(rig: Rig, run: Run, measured: Mapping[str, Array]) -> _core.TankEquations:
+    """The core's equations of one record."""
+    none = np.empty((0, 0))
+    return _core.TankEquations(
+        step=run.step,
+        command=run.signals["valve_command"],
+        pressure=measured["tank_pressure"],
+        temperature=measured.get("tank_temperature", none),
+        supply_pressure=measured.get("supply_pressure", none),
+        conditions=run.conditions,
+        valve=rig.model.valve,
+        chambers=rig.model.chambers,
+    )
+
+
+EQUATIONS = Equations(
+    units=equation_units,
+    derivatives={"tank_pressure": 1, "tank_temperature": 0, "supply_pressure": 0},
+    make=make_equations,
+)
+
+
+def derived(run: Run) -> dict[str, Array]:
+    """How fast the tank fills or empties."""
+    rate = run.rate("tank_pressure")
+    return {"pressure rate [Pa/s]": rate, "direction": np.sign(rate)}
+
+
+# ---- experiments ---------------------------------------------------------------------------------
+
+LENGTH = 8.0
+"""s"""
+STEP = 0.005
+"""s, of the proposed record."""
+TOLERANCE = 1e-5
+"""Of the integrator: a plan needs no more."""
+
+Waveform = Callable[[Array], Array]
+"""Of time (n,): command less the valve's centre, V."""
+
+
+def _levels(times: Sequence[float], volts: Sequence[float]) -> Waveform:
+    """A command that runs from level to level in 20 ms at the given times."""
+
+    def wave(time: Array) -> Array:
+        at, level, now = [0.0], [0.0], 0.0
+        for begin, volt in zip(times, volts, strict=True):
+            at += [begin, begin + 0.02]
+            level += [now, volt]
+            now = volt
+        return np.asarray(np.interp(time, at, level))
+
+    return wave
+
+
+_STROKES = _levels(
+    (0.5, 1.5, 2.0, 3.0, 3.5, 5.0, 5.5, 7.0), (1.2, 0.0, -1.2, 0.0, 2.2, 0.0, -2.2, 0.0)
+)
+_BURSTS = _levels(
+    tuple(0.3 + 0.4 * i + d for i in range(19) for d in (0.0, 0.1)),
+    tuple(v for i in range(19) for v in (0.8 + 0.1 * i if i < 10 else -0.8 - 0.1 * (i - 10), 0.0)),
+)
+_SMALL = _levels((0.5, 2.5, 4.5, 6.5), (0.62, -0.62, 0.75, -0.75))
+_HOLDS = _levels((0.3, 1.0, 4.5, 4.8), (2.0, 0.0, -2.0, 0.0))
+_WIDE = _levels(
+    (0.5, 1.0, 2.0, 2.5, 4.0, 4.5, 6.0, 6.5), (4.5, 0.0, -4.5, 0.0, 4.5, 0.0, -4.5, 0.0)
+)
+
+
+def _chatter(time: Array) -> Array:
+    return np.asarray(1.6 * np.sin(2.0 * np.pi * (0.5 * time + 0.6 * time**2)))
+
+
+def simulated(
+    rig: Rig,
+    params: _core.Params,
+    channels: Sequence[str],
+    *,
+    opening: Waveform,
+    supply_change: float = 0.0,
+) -> Run | None:
+    """The record of a run from little above ambient; a tank stays below its supply whatever the command."""
+    period = 1e-3
+    machine = params.copy()
+    machine["supply_pressure"] = machine["supply_pressure"] + supply_change
+    machine["tank_initial_pressure"] = machine["ambient_pressure"] + 5e4
+    machine["control_period"] = period
+    time = np.arange(0.0, LENGTH, period)
+    command = machine["valve_centre"] + opening(time)
+    try:
+        run = simulation.simulate_tank(
+            command,
+            params=machine,
+            valve_law=rig.model.valve,
+            chamber_law=rig.model.chambers,
+            tolerance=TOLERANCE,
+        )
+    except _core.StatusError:
+        return None
+    pick = slice(None, None, round(STEP / period))
+    names = ("valve_command", *(s for s in OUTPUTS if s in channels))
+    signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
+    changes = {"supply_pressure": supply_change} if supply_change != 0.0 else {}
+    return Run("proposed", "identify", time[pick], signals, frozenset(), changes)
+
+
+MENU = (
+    Experiment(
+        "Fill and vent at two openings, with pauses",
+        "1.2 V and 2.2 V from the centre, 8 s",
+        partial(simulated, opening=_STROKES),
+    ),
+    Experiment(
+        "Bursts of a tenth of a second at ten openings",
+        "0.8 to 1.7 V from the centre, 8 s",
+        partial(simulated, opening=_BURSTS),
+    ),
+    Experiment(
+        "Fill and vent with the valve hardly open",
+        "0.62 and 0.75 V from the centre, two seconds each",
+        partial(simulated, opening=_SMALL),
+    ),
+    Experiment(
+        "Fill, then hold the valve closed; vent, then hold it closed",
+        "three seconds each",
+        partial(simulated, opening=_HOLDS),
+    ),
+    Experiment(
+        "Fill and vent with the valve wide open",
+        "4.5 V from the centre, 8 s",
+        partial(simulated, opening=_WIDE),
+    ),
+    Experiment(
+        "A sweep of the command from 0.5 to 10 Hz",
+        "1.6 V, 8 s",
+        partial(simulated, opening=_chatter),
+    ),
+    Experiment(
+        "Fill and vent at 100 kPa less supply",
+        "read the gauge",
+        partial(simulated, opening=_STROKES, supply_change=-1e5),
+    ),
+)
+
+TANK = Kind(
+    outputs=OUTPUTS,
+    hidden=HIDDEN,
+    make_problem=make_problem,
+    derived=derived,
+    shown=("tank_pressure", "valve_command"),
+    menu=MENU,
+    equations=EQUATIONS,
+)

@@ -1,0 +1,141 @@
+"""Judgements on coloured residuals: false alarms stay rare where counting samples fails; sizes come out right."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from sms.diagnosis.adequacy.repeatability import repeatability
+from sms.estimation.block_statistics import (
+    covariance_of,
+    merge_strokes,
+    project_off,
+    resampled,
+    score_test,
+    strokes_per_block,
+    weighted_ms,
+)
+
+from validation.random_cases import draw
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return draw("statistics")
+
+
+def coloured(rng: np.random.Generator, n: int, correlation: float) -> np.ndarray:
+    noise = rng.normal(size=n) * np.sqrt(1.0 - correlation**2)
+    out = np.empty(n)
+    out[0] = rng.normal()
+    for i in range(1, n):
+        out[i] = correlation * out[i - 1] + noise[i]
+    return out
+
+
+def test_healthy_but_coloured_data_names_nothing(rng: np.random.Generator) -> None:
+    """The regression test of the whole idea: 28 candidates, correlation time 0.5 s at 100 Hz."""
+    strokes, samples, candidates, repeats = 40, 150, 28, 60
+    stroke = np.repeat(np.arange(strokes), samples)
+    n = len(stroke)
+    alarms = naive_alarms = 0
+    for _ in range(repeats):
+        residual = coloured(rng, n, np.exp(-0.01 / 0.5))
+        columns = np.column_stack([coloured(rng, n, 0.99) for _ in range(candidates)])
+        columns = project_off(columns, np.ones((n, 1)))
+        residual = project_off(residual[:, None], np.ones((n, 1)))[:, 0]
+        record = np.zeros(n, dtype=np.int64)
+        block = merge_strokes(record, stroke, strokes_per_block(residual, record, stroke))
+        alarms += bool(np.min(score_test(columns, residual, block, rng, draws=999).p_value) < 0.05)
+        naive = np.abs(columns.T @ residual) / np.linalg.norm(columns, axis=0) / residual.std()
+        naive_alarms += bool(
+            np.max(naive) > 3.1
+        )  # Bonferroni at 5 percent, samples taken as independent
+    assert naive_alarms >= 0.95 * repeats, (
+        "the data would not fool a naive test: nothing is shown here"
+    )
+    assert alarms <= 9, f"{alarms} alarms in {repeats}, 3 are expected"
+
+
+def test_an_effect_at_ten_standard_errors_is_found(rng: np.random.Generator) -> None:
+    strokes, samples = 40, 150
+    stroke = np.repeat(np.arange(strokes), samples)
+    column = np.sign(np.sin(stroke * np.pi + 0.5))[:, None]
+    noise = coloured(rng, len(stroke), 0.98)
+    error = np.sqrt(covariance_of(column, noise, stroke)[0, 0])
+    scores = score_test(column, noise + 10.0 * error * column[:, 0], stroke, rng)
+    assert scores.p_value[0] < 1e-3
+
+
+def test_robust_errors_cover_the_scatter_of_estimates(rng: np.random.Generator) -> None:
+    strokes, samples = 30, 100
+    stroke = np.repeat(np.arange(strokes), samples)
+    column = np.column_stack([np.sign(np.sin(stroke * np.pi + 0.5)), np.ones(len(stroke))])
+    estimates, errors = [], []
+    for _ in range(200):
+        y = np.concatenate([coloured(rng, samples, 0.97) for _ in range(strokes)])
+        beta = np.linalg.lstsq(column, y, rcond=None)[0]
+        estimates.append(beta[0])
+        errors.append(np.sqrt(covariance_of(column, y - column @ beta, stroke)[0, 0]))
+    assert 0.8 < np.mean(errors) / np.std(estimates) < 1.25
+
+
+def test_projection_leaves_nothing_of_what_the_nuisance_spans(rng: np.random.Generator) -> None:
+    nuisance = rng.normal(size=(200, 3)) * np.array([1e6, 1.0, 1e-6])
+    inside = nuisance @ np.array([[1e-6], [2.0], [3e5]])
+    assert np.linalg.norm(project_off(inside, nuisance)) < 1e-9 * np.linalg.norm(inside)
+    outside = project_off(rng.normal(size=(200, 2)), nuisance)
+    assert np.max(np.abs(nuisance.T @ outside) / np.linalg.norm(nuisance, axis=0)[:, None]) < 1e-9
+
+
+def simulated_strokes(rng: np.random.Generator) -> tuple[np.ndarray, ...]:
+    samples, strokes, records = 200, 20, 2
+    stroke = np.repeat(np.arange(strokes * records), samples)
+    record = stroke // strokes
+    direction = np.where(stroke % 2 == 0, 1.0, -1.0)
+    extension = np.tile(np.linspace(0.0, 0.04, samples), strokes * records) + rng.normal(
+        0, 1e-5, len(stroke)
+    )
+    return stroke, record, direction, extension
+
+
+def test_what_repeats_is_told_from_what_does_not(rng: np.random.Generator) -> None:
+    stroke, record, direction, extension = simulated_strokes(rng)
+    noise = rng.normal(0.0, 0.3, len(stroke))
+    between = rng.normal(0.0, 0.2, 40)[stroke]
+    pattern = 0.5 * np.sin(extension / 0.04 * 2.0 * np.pi)
+    split = repeatability(noise + between + pattern, record, stroke, extension, direction, rng)
+    assert split.repeats == pytest.approx(0.125, rel=0.25)
+    assert split.stroke == pytest.approx(0.13, rel=0.3)
+    assert split.sample == pytest.approx(0.09, rel=0.1)
+    assert split.repeats_p_value < 0.01
+    healthy = repeatability(noise + between, record, stroke, extension, direction, rng)
+    assert healthy.repeats < 0.02
+
+
+def test_a_drift_is_told_from_scatter(rng: np.random.Generator) -> None:
+    stroke, record, direction, extension = simulated_strokes(rng)
+    scatter = rng.normal(0.0, 0.2, 40)[stroke]
+    order = (stroke % 20 - 9.5) / 9.5
+    split = repeatability(scatter + 0.5 * order, record, stroke, extension, direction, rng)
+    assert split.drift == pytest.approx(np.mean((0.5 * order) ** 2), rel=0.6)
+    assert split.drift_p_value < 0.01
+    assert repeatability(scatter, record, stroke, extension, direction, rng).drift < 0.02
+
+
+def test_blocks_hold_several_strokes_only_where_noise_lasts_long(rng: np.random.Generator) -> None:
+    stroke, record, *_ = simulated_strokes(rng)
+    assert strokes_per_block(rng.normal(size=len(stroke)), record, stroke) == 1
+    assert strokes_per_block(coloured(rng, len(stroke), 0.99), record, stroke) > 1
+    block = merge_strokes(record, stroke, 3)
+    assert len(np.unique(block)) == 14  # 20 strokes a record in threes, twice
+    assert np.all(np.diff(block) >= 0)
+
+
+def test_resampling_keeps_each_records_number_of_strokes(rng: np.random.Generator) -> None:
+    stroke, record, *_ = simulated_strokes(rng)
+    counts = resampled(record, stroke, rng, draws=50)
+    assert np.all(counts[:, :20].sum(axis=1) == 20)
+    assert np.all(counts[:, 20:].sum(axis=1) == 20)
+    ones = np.ones((1, 40))
+    squared = rng.normal(size=len(stroke)) ** 2
+    assert weighted_ms(squared, stroke, ones)[0] == pytest.approx(squared.mean())

@@ -1,0 +1,153 @@
+"""One law, one number: a law that is right keeps its size in every half and beside a play, another one does not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from sms import _core
+from sms.diagnosis.adequacy.hysteresis import after_play, hysteresis
+from sms.diagnosis.adequacy.parameter_constancy import inconstancy
+from sms.diagnosis.adequacy.subset_estimates import column_of
+from sms.diagnosis.effects.catalogue import effects_of
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
+from sms.diagnosis.localisation.activity import activity, own_signals
+from sms.diagnosis.pipeline import read_and_check
+from sms.diagnosis.simulated import investigate, make_data
+from sms.diagnosis.thresholds import KNOTS
+from sms.estimation.windows import Runs
+from sms.io.rig import load_rig
+
+from validation.hidden_effects.machines.draw import draw
+from validation.random_cases import SEED
+
+pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
+
+
+def fitted_to(folder: Path, kind: str, hidden: str, seed: int, cause: str) -> tuple[Data, Fitted]:
+    """The core with a cause, fitted to records in which `hidden` is hidden."""
+    draw(kind, seed, folder / "rig", folder / "truth.json", hidden, 3.0)
+    rig = load_rig(folder / "rig" / "rig.toml")
+    read, _ = read_and_check(rig)
+    data, effects = make_data(rig, read), effects_of(rig)
+    effect = next(e for e in effects if e.key == cause)
+    baseline = fit(baseline_hypothesis(data, effects), data.identify)
+    return data, fit(baseline.hypothesis.with_effect(effect), data.identify, baseline.params)
+
+
+# ---- halves --------------------------------------------------------------------------------------
+
+
+def test_a_leak_that_opens_at_a_pressure_is_another_law(tmp_path: Path) -> None:
+    data, fitted = fitted_to(tmp_path, "bench", "check_valve_leak", 5, "fitting_leakage of lower")
+    law = inconstancy(fitted, fitted.hypothesis.causes[0], data)
+    assert law is not None
+    assert law.signal.startswith("chamber_pressure")
+    assert law.high[0] > 1.2 * law.low[0] > 0.0
+
+
+@pytest.mark.full
+def test_of_three_legs_each_counts_by_its_own_pressure(tmp_path: Path) -> None:
+    leak = "fitting_leakage of lower"
+    data, fitted = fitted_to(tmp_path, "platform", "check_valve_leak", 710_003, leak)
+    law = inconstancy(fitted, fitted.hypothesis.causes[0], data)
+    assert law is not None
+    assert law.signal == "chamber_pressure_lower [Pa]"
+    assert law.high[0] > law.low[0] > 0.0
+
+
+# ---- when a cause acts ---------------------------------------------------------------------------
+
+
+def test_a_footprint_is_that_of_hidden_inputs_and_its_parts_add_up(tmp_path: Path) -> None:
+    print(f"seed {SEED}")
+    leak = "fitting_leakage of lower"
+    data, fitted = fitted_to(tmp_path, "tank", "fitting_leakage", SEED % 10_000, leak)
+    runs = data.identify
+    assert isinstance(runs, Runs)
+    column = column_of(runs, fitted, fitted.hypothesis.causes[0])
+    found = activity(runs, fitted.params, column)
+    assert found is not None
+    everywhere = np.ones(found.size.shape, dtype=np.bool_)
+    assert np.linalg.norm(found.where(everywhere) - column) < 1e-3 * np.linalg.norm(column)
+    half = own_signals(runs, runs.inputs)["time [s]"] < 2.0
+    assert 0 < half.sum() < half.size
+    parts = found.where(half), found.where(~half)
+    np.testing.assert_allclose(
+        sum(parts), found.where(everywhere), atol=1e-9 * np.abs(column).max()
+    )
+    late = np.array([w.first * runs.motions[w.record].step > 2.0 for w in runs.problem.windows])
+    assert not np.any(parts[0][late[runs.block]])
+
+
+def test_what_jumps_from_sample_to_sample_acts_on_no_equation(tmp_path: Path) -> None:
+    delay = "command_delay"
+    data, fitted = fitted_to(tmp_path, "tank", "command_delay", 3, delay)
+    runs = data.identify
+    assert isinstance(runs, Runs)
+    assert activity(runs, fitted.params, np.where(runs.sample % 2 == 0, 1.0, -1.0)) is None
+    late = fitted.hypothesis.causes[0]
+    assert activity(runs, fitted.params, column_of(runs, fitted, late)) is None
+    assert inconstancy(fitted, late, data) is None
+
+
+def test_beside_an_input_of_a_leg_stands_the_signal_of_that_leg() -> None:
+    samples = 2 * KNOTS
+    window = SimpleNamespace(row=0, rows=samples, samples=samples)
+    inputs = {f"force of leg {leg}": "N" for leg in (1, 2, 3)}
+    runs = cast(
+        Runs,
+        SimpleNamespace(
+            problem=SimpleNamespace(windows=[window]),
+            channels=("extension_1",),
+            kind=SimpleNamespace(hidden=inputs),
+        ),
+    )
+    signals = {f"velocity_{leg} [m/s]": np.full(samples, float(leg)) for leg in (1, 2, 3)}
+    found = own_signals(runs, signals | {"roll [rad]": np.full(samples, 7.0)})
+    assert set(found) == {"velocity [m/s]", "roll [rad]"}
+    np.testing.assert_array_equal(found["velocity [m/s]"], [np.repeat([1.0, 2.0, 3.0], KNOTS)])
+    np.testing.assert_array_equal(found["roll [rad]"], [np.full(3 * KNOTS, 7.0)])
+
+
+# ---- memory --------------------------------------------------------------------------------------
+
+
+def test_what_follows_with_a_play_stays_where_the_command_turns() -> None:
+    command = np.array([5.0, 5.5, 6.0, 5.9, 5.5, 5.0, 5.05])
+    np.testing.assert_allclose(after_play(command, 0.2), [5.0, 5.3, 5.8, 5.8, 5.7, 5.2, 5.2])
+    np.testing.assert_array_equal(after_play(command, 0.0), command)
+
+
+def test_a_spool_that_sticks_is_no_wider_dead_band(tmp_path: Path) -> None:
+    print(f"seed {SEED}")
+    data, fitted = fitted_to(tmp_path, "tank", "sticky_spool", SEED % 10_000, "dead_band_width")
+    effect = fitted.hypothesis.causes[0]
+    found = hysteresis(fitted, effect, data)
+    assert found is not None
+    assert abs(found.beside[0]) < 0.6 * found.alone
+    assert found.play[0] > 0.4 * found.alone
+
+
+def test_a_wider_dead_band_has_no_memory_and_one_width(tmp_path: Path) -> None:
+    print(f"seed {SEED}")
+    data, fitted = fitted_to(tmp_path, "tank", "dead_band_width", SEED % 10_000, "dead_band_width")
+    effect = fitted.hypothesis.causes[0]
+    assert hysteresis(fitted, effect, data) is None
+    assert inconstancy(fitted, effect, data) is None
+
+
+def test_records_of_a_spool_that_sticks_are_unknown_and_do_not_contradict_each_other(
+    tmp_path: Path,
+) -> None:
+    draw("tank", 720_083, tmp_path / "rig", tmp_path / "truth.json", "sticky_spool", 3.0)
+    rig = load_rig(tmp_path / "rig" / "rig.toml")
+    read, _ = read_and_check(rig)
+    data, rng = make_data(rig, read), np.random.default_rng(0)
+    case = investigate(data, effects_of(rig), rng, lambda text, done: None)
+    assert case.verdict == "unknown"
+    assert case.inconsistency is None
+    assert case.inconstancy is not None
