@@ -1,0 +1,44 @@
+"""Which packages of `sms` may import which: the table of rooms in docs/architecture.md."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+import sms
+
+ROOT = Path(sms.__file__).parent
+FORBIDDEN = {
+    "io": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),
+    "estimation": ("rigs", "identification", "diagnosis", "report", "cli"),
+    "rigs": ("identification", "diagnosis", "report", "cli"),
+    "identification": ("diagnosis", "report", "cli"),
+    "diagnosis": ("identification", "cli"),
+    "report": ("cli",),
+}
+"""Package -> packages that it must not import, not even inside a function."""
+
+
+def imported(file: Path) -> set[str]:
+    """The modules of `sms` that a file imports: "sms.io.rig", and "sms.io.rig.Rig" for a name of it."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module is not None:
+            found |= {f"{node.module}.{a.name}" for a in node.names}
+        elif isinstance(node, ast.Import):
+            found |= {a.name for a in node.names}
+    return {name for name in found if name.startswith("sms.")}
+
+
+@pytest.mark.parametrize("package", sorted(FORBIDDEN))
+def test_a_package_imports_only_what_stands_below_it(package: str) -> None:
+    files = sorted((ROOT / package).rglob("*.py"))
+    assert files
+    wrong = [
+        f"{file.relative_to(ROOT)} imports {name}"
+        for file in files
+        for name in sorted(imported(file))
+        if name.split(".")[1] in FORBIDDEN[package]
+    ]
+    assert not wrong
