@@ -20,10 +20,10 @@ from pathlib import Path
 import numpy as np
 import psutil
 from rich.console import Console
+from sms.io.can_files import LogWriter
 from sms.link.bus import BusAddress, open_bus
 from sms.link.codec import CONTROLLER, sent_by
 from sms.link.drive import drive
-from sms.link.logs import LogWriter
 from sms.link.monitor import REFRESH, picture
 from sms.link.motion import PlatformMotion
 from sms.link.real_time import SimulatedBus, SimulatedWorld

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from sms.cli import app
 from sms.io import InputError
+from sms.io.can_files import read_frames
 from sms.io.can_frames import load_dbc
 from sms.io.can_logs import read_can_log
 from sms.io.tables import read_table
-from sms.link.logs import read_frames
 from typer.testing import CliRunner, Result
 
 COMMANDS = ("monitor", "drive", "record", "replay", "get", "set", "rig")

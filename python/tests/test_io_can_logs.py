@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from io_support import PARAMETERS, healthy_signals
 from sms.io import InputError, Record, check_record, load_record, load_rig, write_extended_rig
+from sms.io.can_files import WRITTEN, LogWriter, read_frames
 from sms.io.can_frames import find_channel, load_dbc
 from sms.io.can_logs import read_can_log
 from sms.io.tables import is_can_log
-from sms.link.logs import WRITTEN, LogWriter, read_frames
 
 from validation.random_cases import draw
 

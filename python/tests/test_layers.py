@@ -10,12 +10,13 @@ import sms
 
 ROOT = Path(sms.__file__).parent
 FORBIDDEN = {
-    "io": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),
+    "io": ("link", "estimation", "rigs", "identification", "diagnosis", "report", "cli"),
     "estimation": ("rigs", "identification", "diagnosis", "report", "cli"),
     "rigs": ("identification", "diagnosis", "report", "cli"),
     "identification": ("diagnosis", "report", "cli"),
     "diagnosis": ("identification", "cli"),
     "report": ("cli",),
+    "link": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),
 }
 """Package -> packages that it must not import, not even inside a function."""
 

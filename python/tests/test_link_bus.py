@@ -8,9 +8,9 @@ from pathlib import Path
 import can
 import pytest
 from sms.io import InputError
+from sms.io.can_files import LogWriter
 from sms.link.bus import BusAddress, open_bus
 from sms.link.faulty_bus import DELAY, REORDER, FaultyBus, FrameFaults
-from sms.link.logs import LogWriter
 from sms.link.replay import LogBus, replay
 
 from validation.random_cases import draw

@@ -94,7 +94,7 @@ def linked(interface: str, channel: str | None, bitrate: int) -> Iterator[RigLin
 
 @contextmanager
 def recording(link: RigLink, log: Path | None) -> Iterator[None]:
-    from sms.link.logs import LogWriter  # noqa: PLC0415
+    from sms.io.can_files import LogWriter  # noqa: PLC0415
 
     if log is None:
         yield

@@ -50,7 +50,7 @@ def record(
 
     The log appears when it is finished, whole; Ctrl-C finishes it.
     """
-    from sms.link.logs import LogWriter  # noqa: PLC0415
+    from sms.io.can_files import LogWriter  # noqa: PLC0415
 
     with (
         linked(interface, channel, bitrate) as link,

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from sms import _core
 from sms.arrays import Array
 from sms.io.can_decode import Payloads
+from sms.io.can_files import read_frames
 from sms.io.errors import InputError, did_you_mean
 from sms.io.tables import Remark
 from sms.io.units import split_column_name
-from sms.link.logs import read_frames
 
 TIME = "time"  #: the column of the frames' times, from the log's first frame on
 CLOCK = "sample_time"  #: the signal by which a sender says when it sampled

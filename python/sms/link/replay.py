@@ -9,9 +9,9 @@ from pathlib import Path
 
 import can
 
+from sms.io.can_files import read_frames
 from sms.io.errors import InputError
 from sms.link.codec import HOST, sent_by
-from sms.link.logs import read_frames
 from sms.link.rig_link import BusError
 
 REPORT = 500  #: frames between two calls of the progress
