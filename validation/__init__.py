@@ -1,1 +1,4 @@
-"""Independent references, published results side by side, hidden-effect trials."""
+"""Independent references, virtual machines, trials and measurements: what shows that the project is right.
+
+Each folder says in its first sentence what it proves.
+"""

@@ -22,7 +22,7 @@ template <typename Work>
   work();
 }
 
-// Times work(), which makes so many calls, and prints a line that validation/bench.py reads: name, tab, nanoseconds of
+// Times work(), which makes so many calls, and prints a line that validation/speed/__main__.py reads: name, tab, nanoseconds of
 // one call, tab, number of calls.
 template <typename Work>
 void measure(const char* name, int calls, const Work& work) {

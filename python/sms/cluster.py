@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
+import sys
+from pathlib import Path
 from typing import Any
 
 from sms.io.errors import InputError
@@ -22,3 +25,22 @@ def client_of(scheduler: str) -> Any:
             f"--scheduler {scheduler}: no Dask scheduler answers there ({problem}); start one with "
             "`dask scheduler`"
         ) from None
+
+
+def call_from(folder: str, module: str, function: str, argument: dict[str, Any]) -> Any:
+    """Call function(**argument) of a module that is not installed, on a worker.
+
+    Workers know the package sms. The module comes from the folder in which the worker was started, or from `folder`,
+    where both see the same files. InputError where it is in neither.
+    """
+    places = [Path.cwd(), Path(folder)]
+    file = Path(*module.split(".")).with_suffix(".py")
+    here = next((place for place in places if (place / file).is_file()), None)
+    if here is None:
+        raise InputError(
+            f"{file} is neither in {places[0]}, where the worker runs, nor in {places[1]}; "
+            "start workers in a checkout of the project"
+        )
+    if str(here) not in sys.path:
+        sys.path.insert(0, str(here))
+    return getattr(importlib.import_module(module), function)(**argument)

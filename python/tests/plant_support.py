@@ -1,6 +1,6 @@
 """Records of a bench actuator and of a platform made with the core itself: for tests of the method, not of its truth.
 
-(Trials with an independent simulator are under validation/hidden_effects.)
+(Trials with an independent simulator are under validation/twins.)
 """
 
 from __future__ import annotations

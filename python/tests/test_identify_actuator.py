@@ -21,7 +21,7 @@ from sms.report.actuator import actuator_html
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
 
-from validation.actuator_runs.draw import draw
+from validation.twins.actuator_runs import draw
 
 SEED = 2
 Drawn = tuple[Path, dict[str, float]]

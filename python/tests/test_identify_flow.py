@@ -21,9 +21,9 @@ from sms.io import InputError
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
 
-from validation.flow_matrix.draw import draw
-from validation.flow_matrix.tank_twin import Charging, true_component
-from validation.flow_matrix.trial import declared, one_test, truth_of
+from validation.trials.identify_flow import declared, one_test, truth_of
+from validation.twins.flow_runs import draw
+from validation.twins.flow_test import Charging, true_component
 
 SEED = 20
 C, B, M = COMPONENT

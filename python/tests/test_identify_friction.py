@@ -13,7 +13,7 @@ from sms.identification.friction_result import declarations, sentences
 from sms.io import InputError
 from test_cli_diagnose import sms as command
 
-from validation.friction_runs.draw import Run, draw
+from validation.twins.friction_runs import Run, draw
 
 RUNS = (
     Run(0.10, 0.10, 20.0, "identify"),

@@ -14,7 +14,7 @@ from sms.io import InputError
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
 
-from validation.spool_runs.draw import RUNS, Run, draw
+from validation.twins.spool_runs import RUNS, Run, draw
 
 SEED = 3
 

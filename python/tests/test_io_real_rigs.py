@@ -12,7 +12,7 @@ from io_support import AMBIENT, healthy_signals
 from sms.io import check_record, check_rig, load_record, load_rig
 
 CHECKOUT = Path(__file__).parents[2]
-RIGS = sorted((CHECKOUT / "validation" / "rigs").glob("cylinder_*.toml"))
+RIGS = sorted((CHECKOUT / "validation" / "measured" / "rigs").glob("cylinder_*.toml"))
 FOLDER = "cylinder_friction_zillen"
 BAR = (1, 3, 5, 7)
 

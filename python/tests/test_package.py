@@ -12,7 +12,7 @@ import pytest
 import sms
 from sms import _core
 
-from validation import generate
+from tools import generate
 
 ROOT = Path(__file__).resolve().parents[2]
 

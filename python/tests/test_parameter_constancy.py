@@ -21,8 +21,8 @@ from sms.diagnosis.thresholds import KNOTS
 from sms.estimation.windows import Runs
 from sms.io.rig import load_rig
 
-from validation.hidden_effects.machines.draw import draw
 from validation.random_cases import SEED
+from validation.twins.draw import draw
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 

@@ -13,7 +13,7 @@ import pytest
 from cantools.database.can import Message, Signal
 from sms import _core
 
-from validation.generate_frames import DBC, is_physical
+from tools.generate_frames import DBC, is_physical
 from validation.random_cases import SEED
 
 DATABASE = cantools.database.load_file(DBC)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from validation import check_components
+from validation.reference import check_components
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("SMS_SHARED", ROOT.parent / "shared"))

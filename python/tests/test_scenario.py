@@ -36,7 +36,7 @@ from test_cli_mechanism import run
 
 DATA = Path(__file__).parents[2] / "../shared/data"
 DOCS = Path(__file__).parents[2] / "docs/simulation.md"
-SCENARIOS = Path(__file__).parents[2] / "validation/scenarios"
+SCENARIOS = Path(__file__).parents[2] / "validation/measured/scenarios"
 needs_data = pytest.mark.skipif(
     not (DATA / "ship_section_waves_sundsdal").is_dir(), reason="needs ../shared/data"
 )

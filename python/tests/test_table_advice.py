@@ -7,9 +7,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from validation import table_advice
-from validation.log_plot import Curve, LogPlot, Mark
-from validation.table_page import Accuracy, length, size, smallest
+from validation.speed import table_advice
+from validation.speed.log_plot import Curve, LogPlot, Mark
+from validation.speed.table_page import Accuracy, length, size, smallest
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -1,1 +1,1 @@
-"""Why some published figures do not come out: fits over what may be missing or read differently."""
+"""Proves which published figures the project reproduces, and what must be missing where it does not."""

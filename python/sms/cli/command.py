@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms import _core
-from sms.cli import can, identify, limits, mechanism, noise, simulate, study, trials, validate
+from sms.cli import can, identify, limits, mechanism, noise, simulate, study, validate
 from sms.io.errors import InputError
 
 app = typer.Typer(
@@ -113,7 +113,6 @@ study.register(app)
 can.register(app)
 noise.register(app)
 validate.register(app)
-trials.register(app)
 
 
 def main() -> None:

@@ -9,7 +9,7 @@ do: what differs between runs may look like a term that no run shows by itself.
 An error is itself estimated, from a few runs or some tens of blocks, so that intervals are Student's t with as many
 degrees of freedom. A parameter that is zero without its effect counts as shown where it would hardly be so by chance:
 FALSE is the chance of claiming any of a law's parameters on a record set without them, shared among them (Bonferroni).
-How often that happens is counted by validation/friction_runs/trial.py.
+How often that happens is counted by validation/trials/identify_friction.py.
 """
 
 from __future__ import annotations

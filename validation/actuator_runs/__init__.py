@@ -1,1 +1,0 @@
-"""Runs of a healthy actuator on the bench by an independent simulator, and how well they are identified."""

@@ -1,1 +1,0 @@
-"""The source's test matrix of the flow through its valve, made by an independent simulator."""

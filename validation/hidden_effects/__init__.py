@@ -1,1 +1,0 @@
-"""Virtual measurements with one hidden effect, made without the core (see README.md)."""

@@ -1,1 +1,0 @@
-"""Tests of the virtual cylinder itself; they need neither the core nor its Python package."""

@@ -1,0 +1,46 @@
+"""Friction by seal from the measured cylinder (Zillen, Vallery, Smit, TU Delft, CC0): what its runs show.
+
+    python -m validation.measured.friction
+
+Each rig file under validation/measured/rigs is one seal or one repeat of a test. The runs are slow (4 to 14 mm/s),
+so the table says little by design: what these motions cannot show is left out of it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sms.identification.friction import FrictionResult, identify_friction
+from sms.identification.friction_fit import EQUATION
+
+RIGS = ("cylinder_o_ring", "cylinder_kdn", "cylinder_o_ring_rerun1", "cylinder_o_ring_rerun3")
+LAW = "stribeck"
+
+
+def line(name: str, result: FrictionResult) -> str:
+    """One rig as a row: the simplest law, since no other is shown to be better here."""
+    fit = result.law(LAW)
+    told = {t.name: t for t in fit.told}
+    c = told["coulomb_force"]
+    others = [n for n, t in told.items() if not t.shown and not n.startswith("sensor_")]
+    others += [n for n, _ in fit.left_out]
+    return (
+        f"| {name} | {1e3 * result.speed[0]:.1f} to {1e3 * result.speed[1]:.1f} "
+        f"| {c.value:.2f} ± {c.error:.2f} | {c.scatter:.2f} | {fit.rms_identify:.2f} "
+        f"| {fit.rms_validate:.2f} | {', '.join(others)} |"
+    )
+
+
+def main() -> None:
+    """Print the table."""
+    print(f"{EQUATION[LAW]}:\n")
+    print("| rig | speed [mm/s] | Coulomb force [N] | scatter of runs [N] | left [N] | left, unseen runs [N] "
+          "| not shown |")  # fmt: skip
+    print("|---|---|---|---|---|---|---|")
+    for name in RIGS:
+        path = Path(__file__).parent / "rigs" / f"{name}.toml"
+        print(line(name, identify_friction(path)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+"""The claim on the measured cylinder: both causes are found without being told, and hold on records not seen."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sms.diagnosis import Diagnosis, diagnose
+
+ROOT = Path(__file__).parents[3]
+DATA = "cylinder_friction_zillen"
+PLACES = [
+    Path(p) / DATA for p in (os.environ.get("SMS_DATA"), ROOT.parent / "shared" / "data") if p
+]
+FOLDER = next((p for p in PLACES if p.is_dir()), None)
+
+pytestmark = pytest.mark.skipif(
+    FOLDER is None,
+    reason=f"the measured data is not at hand (looked in {PLACES}); "
+    "GitHub EvaZillen/3D-printed-pneumatic-actuator, CC0-1.0, set SMS_DATA to the folder "
+    "above it",
+)
+
+
+@pytest.fixture(scope="module", params=["o_ring", "kdn"])
+def answer(request: pytest.FixtureRequest) -> Diagnosis:
+    assert FOLDER is not None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SMS_DATA", str(FOLDER.parent))
+        return diagnose(
+            ROOT / "validation" / "measured" / "rigs" / f"cylinder_{request.param}.toml"
+        )
+
+
+def test_two_causes_are_named(answer: Diagnosis) -> None:
+    assert answer.verdict == "combination"
+    gain, friction = answer.causes
+    assert set(gain.members) == {"sensor_gain", "bore_diameter"}
+    assert {gain.signal, *(a.signal for a in gain.alternatives)} == {
+        "rod_force",
+        "chamber_pressure_lower",
+        None,
+    }
+    assert 0.005 < gain.parameters[0].value < 0.02
+    assert friction.members == ("pressure_dependent_friction",)
+
+
+def test_the_seals_differ_in_friction(answer: Diagnosis) -> None:
+    per_bar = 1e5 * answer.causes[1].parameters[0].value
+    expected = 0.75 if "O-ring" in answer.title else 0.13
+    assert per_bar == pytest.approx(expected, abs=0.05)
+
+
+def test_the_error_on_unseen_records(answer: Diagnosis) -> None:
+    def pooled(kind: str) -> float:
+        return float(np.sqrt(np.mean([getattr(g, kind) ** 2 for g in answer.gain])))
+
+    assert pooled("baseline_rms") > 3.0
+    assert pooled("extended_rms") < (1.25 if "O-ring" in answer.title else 0.85)
+    assert all(g.reduction_low > 0.3 for g in answer.gain)
+
+
+def test_nothing_is_claimed_of_speed(answer: Diagnosis) -> None:
+    blind = {n.effect: n.reason for n in answer.not_testable}
+    assert {"viscous_friction", "stribeck_friction", "exponential_friction"} <= set(blind)
+    assert "decade" in blind["viscous_friction"]
+
+
+def test_the_proportional_error_stays_with_the_rig_and_the_friction_goes_with_the_seal(
+    answer: Diagnosis,
+) -> None:
+    assert len(answer.related) == 4
+    if "O-ring" in answer.title:
+        text = " ".join(answer.conclusion)
+        assert "belongs to the rig, not to the seal" in text
+        assert "goes with the seal" in text

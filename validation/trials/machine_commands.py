@@ -1,0 +1,132 @@
+"""`./dev trials bench|platform|tank`: effects hidden in virtual measurements, and what the diagnosis says of them."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from sms.io.errors import InputError
+from sms.io.write import write_text_atomically
+
+from validation.trials.machines import run_tasks, tasks
+from validation.trials.page import trials_html
+from validation.trials.scoring import Outcome, confusion_table, goal_table, goals, load
+
+Count = Annotated[int, typer.Option(min=1, help="How many trials.")]
+Seed = Annotated[int | None, typer.Option(help="Seed of the first; fresh and printed if left out.")]
+Multiple = Annotated[
+    float, typer.Option(help="Size of the hidden effect, times its detection limit.")
+]
+Out = Annotated[Path, typer.Option(help="Folder for trials.jsonl and trials.html.")]
+Workers = Annotated[int, typer.Option(min=1, help="Processes on this machine.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help='An existing Dask scheduler, "tcp://host:port", its workers started in a checkout of the project.',
+    ),
+]
+Json = Annotated[
+    Path | None, typer.Option("--json", help="File for goals and outcomes, for programs.")
+]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands."""
+    for rig in ("bench", "platform", "tank"):
+        app.command(
+            rig,
+            epilog=f"Example: **./dev trials {rig} --count 200 --out trials**. Stopped with Ctrl-C, it goes on where "
+            "it was when called again with the same --out and --seed.",
+        )(_trials_of(rig))
+    app.command()(score)
+
+
+def _trials_of(rig: str) -> Callable[..., None]:
+    def trials(
+        count: Count = 40,
+        seed: Seed = None,
+        multiple: Multiple = 3.0,
+        out: Out = Path("trials"),
+        workers: Workers = 2,
+        scheduler: Scheduler = None,
+        as_json: Json = None,
+    ) -> None:
+        first = secrets.randbelow(10**6) if seed is None else seed
+        console = Console()
+        console.print(f"[dim]{rig} --seed {first} --count {count} --multiple {multiple:g}[/dim]")
+        outcomes = _with_progress(rig, first, count, multiple, out, workers, scheduler)
+        console.print(goal_table(outcomes))
+        for o in outcomes:
+            if not o.right:
+                hidden = " + ".join(o.hidden) or "nothing"
+                console.print(f"[dim]seed {o.seed}[/dim] hidden {hidden}, said {o.said}")
+        page = out / "trials.html"
+        write_text_atomically(page, trials_html(rig, first, multiple, outcomes))
+        if as_json is not None:
+            write_text_atomically(as_json, json.dumps(as_dict(outcomes), indent=1) + "\n")
+        console.print(f"[dim]written: {page}, {out / 'trials.jsonl'}[/dim]")
+
+    trials.__doc__ = f"""Hide effects in measurements of a virtual {rig}, diagnose them blind, count.
+
+    Half of the trials hide an effect of the catalogue, a fifth nothing, a fifth something that the catalogue does not
+    have, a tenth two effects at once. The truth is sealed before the diagnosis begins and opened after. The simulator
+    that makes the measurements is independent of the core (validation/twins).
+    """
+    return trials
+
+
+def _with_progress(
+    rig: str,
+    first: int,
+    count: int,
+    multiple: float,
+    out: Path,
+    workers: int,
+    scheduler: str | None,
+) -> list[Outcome]:
+    wanted, file = tasks(rig, first, count, multiple), out / "trials.jsonl"
+    columns = (
+        TextColumn("hiding and finding"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=count)
+        have = {(o.kind, o.seed, o.sort, o.multiple) for o in load(file)}
+        progress.advance(task, sum((t.kind, t.seed, t.sort, t.multiple) in have for t in wanted))
+        return run_tasks(wanted, file, workers, scheduler, lambda outcome: progress.advance(task))
+
+
+def score(
+    files: Annotated[list[Path], typer.Argument(help="Outcomes, as a trial writes them.")],
+) -> None:
+    """Confusion matrix and goals of outcomes (JSON lines)."""
+    outcomes = [outcome for path in files for outcome in load(path)]
+    if not outcomes:
+        raise InputError("there is no outcome in these files")
+    console = Console(width=200)
+    for kind in sorted({outcome.kind for outcome in outcomes}):
+        own = [outcome for outcome in outcomes if outcome.kind == kind]
+        console.print(f"[bold]{kind}[/bold], {len(own)} trials")
+        console.print(confusion_table(own))
+        console.print(goal_table(own))
+
+
+def as_dict(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """Goals and outcomes for programs."""
+    return {
+        "goals": [
+            {"goal": g.what, "count": g.count, "of": g.of, "wanted": g.wanted}
+            for g in goals(outcomes)
+        ],
+        "outcomes": [asdict(o) for o in outcomes],
+    }

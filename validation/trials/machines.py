@@ -1,0 +1,266 @@
+"""Blind trials on simulated machines: an effect is hidden, the diagnosis has to name it, then the truth is opened.
+
+One trial is one line of a JSON-lines file, so that a run can be stopped and taken up again: what is in the file is not
+done twice. `./dev trials` is the command; the generator (machines/) knows nothing of the diagnosis, and the diagnosis
+nothing of it; they meet in the records' folder only.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from sms.cluster import call_from, client_of
+from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
+from sms.diagnosis.adequacy.subset_estimates import found_value
+from sms.diagnosis.effects.catalogue import Effect, effects_of
+from sms.diagnosis.hypothesis import fit
+from sms.diagnosis.pipeline import read_and_check
+from sms.diagnosis.simulated import Case, investigate, make_data
+from sms.io.rig import load_rig
+
+from validation.trials.scoring import Outcome, confusion, goals, load
+from validation.twins import effects
+from validation.twins.draw import draw, draw_runs, drawable, open_truth
+
+__all__ = [
+    "Outcome",
+    "Task",
+    "confusion",
+    "done_already",
+    "goals",
+    "run_task",
+    "run_tasks",
+    "tasks",
+]
+
+
+@dataclass(frozen=True)
+class Task:
+    """What to hide, and with which seed."""
+
+    kind: str
+    seed: int
+    sort: str
+    multiple: float
+
+
+def hide(task: Task, out: Path, truth: Path) -> None:
+    """Draw the records of a task."""
+    rng = np.random.default_rng([task.seed, 11])
+    if task.sort == "catalogue":
+        chosen: Any = None
+        pair, _ = draw_runs(task.kind, runs_rng(task.seed))
+        keys = sorted(e.key for e in drawable(task.kind, pair, task.multiple))
+        chosen = keys[int(rng.integers(len(keys)))]
+    elif task.sort == "pair":
+        pair, _ = draw_runs(task.kind, runs_rng(task.seed))
+        keys = sorted({e.key for e in drawable(task.kind, pair, task.multiple)})
+        chosen = [str(k) for k in rng.choice(keys, 2, replace=False)]
+    elif task.sort == "outside":
+        outside = [e.key for e in effects.on(task.kind, effects.OUT_OF_CATALOGUE)]
+        chosen = outside[int(rng.integers(len(outside)))]
+    else:
+        chosen = "none"
+    draw(task.kind, task.seed, out, truth, chosen, task.multiple)
+
+
+def runs_rng(seed: int) -> np.random.Generator:
+    """The generator's own stream for its runs, to know which excitations it will draw."""
+    return np.random.default_rng(np.random.SeedSequence(seed).spawn(4)[2])
+
+
+def run_task(task: Task) -> Outcome:
+    """Hide, diagnose, then open the truth."""
+    with tempfile.TemporaryDirectory() as folder:
+        records, sealed = Path(folder) / "records", Path(folder) / "sealed" / "truth.json"
+        hide(task, records, sealed)
+        answer = answered(records, task.seed)
+        return outcome_of(task, answer, open_truth(sealed, records))
+
+
+def fields_of(**task: Any) -> dict[str, Any]:
+    """The outcome of a task, both as their fields: what travels to a worker and back."""
+    return asdict(run_task(Task(**task)))
+
+
+@dataclass(frozen=True)
+class Answered:
+    """A diagnosis of a folder of records."""
+
+    case: Case
+    block: str
+    """The equation that takes most, for the verdict unknown."""
+    seconds: float
+    """Of processor time."""
+
+
+def answered(records: Path, seed: int) -> Answered:
+    """Diagnose the records of a folder, on one thread."""
+    os.environ.setdefault("SMS_THREADS", "1")
+    begin = time.process_time()
+    rig = load_rig(records / "rig.toml")
+    read, _ = read_and_check(rig)
+    data, rng = make_data(rig, read), np.random.default_rng(seed)
+    case = investigate(data, effects_of(rig), rng, lambda text, done: None)
+    unknown = case.verdict == "unknown"
+    block = case.where(np.random.default_rng(seed)).equation if unknown else ""
+    return Answered(case, block, time.process_time() - begin)
+
+
+def key_of(effect: Effect) -> str:
+    """An effect's name in the words of the generator: "sensor_gain:extension"."""
+    return effect.key.replace(" of ", ":")
+
+
+def outcome_of(task: Task, answer: Answered, truth: dict[str, Any]) -> Outcome:
+    """What was said against the opened truth."""
+    case = answer.case
+    hidden = [e["key"] for e in truth["effects"]]
+    return Outcome(
+        task.kind,
+        task.seed,
+        task.sort,
+        task.multiple,
+        hidden,
+        [float(e["value"]) for e in truth["effects"]],
+        case.verdict,
+        [[key_of(m.effect) for m in members] for members in case.outcome.groups],
+        _estimates(case, truth["effects"]),
+        answer.block,
+        taken(case, case.after),
+        answer.seconds,
+        achievable(case, hidden) if task.sort in ("catalogue", "pair") else None,
+    )
+
+
+def _estimates(case: Case, hidden: Sequence[dict[str, Any]]) -> list[tuple[float, float]]:
+    """Value and standard error of what was hidden, where it was named."""
+    rig = case.data.rig
+    found = {}
+    for members in case.outcome.groups:
+        for m in members:
+            at = case.outcome.final if m is members[0] else m.fitted
+            found[key_of(m.effect)] = found_value(at, m.effect, case.data)
+    estimates = []
+    for e in hidden:
+        value = found.get(e["key"])
+        # With another unit the simulator has another law for it, with numbers of its own.
+        if value is not None and value.unit == e["unit"]:
+            declared = rig.declared(value.name).value if e["is_shift"] else 0.0
+            estimates.append((value.value - declared, value.standard_error))
+    return estimates
+
+
+# ---- gain ------------------------------------------------------------
+
+
+def taken(case: Case, after: LackOfFit) -> float:
+    """Part of the baseline's excess on the unseen records that a model takes."""
+    before = float(np.mean(case.before.validate))
+    return 1.0 - max(float(np.mean(after.validate)), 0.0) / max(before, 1e-9)
+
+
+def achievable(case: Case, hidden: Sequence[str]) -> float | None:
+    """The same for the true model: the core with exactly what was hidden, its parameters fitted to the same records.
+
+    Not with the sealed values: the simulator has laws of its own, and its numbers are not the core's. Where the answer
+    is this model, it is not fitted again. None where the core has no such effect.
+    """
+    effects = {key_of(e): e for e in effects_of(case.data.rig)}
+    if not all(key in effects for key in hidden):
+        return None
+    classes = case.outcome.groups
+    if sorted(key_of(c[0].effect) for c in classes) == sorted(hidden):
+        return taken(case, case.after)
+    alone = [m for c in classes for m in c if key_of(m.effect) == hidden[0]]
+    if len(classes) == len(hidden) == len(alone) == 1:
+        return taken(case, lack_of_fit(alone[0].fitted, case.data))
+    hypothesis = case.baseline.hypothesis
+    start = case.baseline.params.copy()
+    for key in hidden:
+        hypothesis = hypothesis.with_effect(effects[key])
+        if (step := effects[key].step) is not None:  # without a slope at its neutral value
+            start[effects[key].parameters[0]] = step
+    return taken(case, lack_of_fit(fit(hypothesis, case.data.identify, start), case.data))
+
+
+# ---- many ------------------------------------------------------------
+
+
+def tasks(kind: str, first: int, count: int, multiple: float) -> list[Task]:
+    """Half of the catalogue, a fifth each healthy and from outside it, a tenth pairs."""
+    pattern = (
+        "catalogue",
+        "healthy",
+        "catalogue",
+        "outside",
+        "catalogue",
+        "healthy",
+        "catalogue",
+        "outside",
+        "catalogue",
+        "pair",
+    )
+    return [Task(kind, first + i, pattern[i % len(pattern)], multiple) for i in range(count)]
+
+
+def done_already(file: Path) -> dict[tuple[str, int, str, float], Outcome]:
+    """The trials in a file, by task."""
+    return {(o.kind, o.seed, o.sort, o.multiple): o for o in load(file)}
+
+
+def run_tasks(
+    wanted: Sequence[Task],
+    file: Path,
+    workers: int,
+    scheduler: str | None = None,
+    each: Callable[[Outcome], None] = lambda outcome: None,
+) -> list[Outcome]:
+    """Every trial that is not in the file yet, in parallel, each written as it comes. All outcomes, by seed."""
+    have = done_already(file)
+    missing = [t for t in wanted if (t.kind, t.seed, t.sort, t.multiple) not in have]
+    outcomes = [have[(t.kind, t.seed, t.sort, t.multiple)] for t in wanted if t not in missing]
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with file.open("a") as log:
+        for outcome in _run(missing, workers, scheduler):
+            log.write(json.dumps(asdict(outcome)) + "\n")
+            log.flush()
+            outcomes.append(outcome)
+            each(outcome)
+    return sorted(outcomes, key=lambda o: o.seed)
+
+
+def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[Outcome]:
+    if scheduler is not None:
+        with client_of(scheduler) as client:
+            from distributed import as_completed as finished  # noqa: PLC0415 (optional extra)
+
+            jobs = [asdict(task) for task in missing]
+            where = str(Path(__file__).parents[2]), __name__, "fields_of"
+            calls = client.map(partial(call_from, *where), jobs, pure=False)
+            for job in finished(calls):  # type: ignore[no-untyped-call]
+                yield Outcome(**job.result())
+        return
+    # A process is one core: new ones read this when they load their linear algebra, forked ones have it loaded.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        pending = {pool.submit(run_task, task): task for task in missing}
+        for job in as_completed(pending):
+            if (fault := job.exception()) is not None:
+                pool.shutdown(wait=False, cancel_futures=True)
+                task = pending[job]
+                raise RuntimeError(
+                    f"trial {task.sort} of {task.kind}, seed {task.seed}, broke down; those that are done are kept"
+                ) from fault
+            yield job.result()

@@ -1,0 +1,33 @@
+"""The command `./dev trials`: what it refuses, and what it writes for programs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from sms.io import InputError
+from typer.testing import CliRunner
+
+from validation.trials.__main__ import app
+from validation.trials.machine_commands import as_dict
+from validation.trials.scoring import Outcome
+
+LEAK = Outcome("tank", 1, "catalogue", 3.0, ["leak"], [1.0], "cause", [["leak"]])
+
+
+def test_a_rig_that_nobody_simulates_is_refused() -> None:
+    answer = CliRunner().invoke(app, ["boat"])
+    assert answer.exit_code == 2
+    assert "No such command 'boat'" in answer.output
+
+
+def test_files_without_an_outcome_are_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no outcome"):
+        CliRunner().invoke(app, ["score", str(tmp_path / "none")], catch_exceptions=False)
+
+
+def test_programs_get_goals_and_outcomes() -> None:
+    answer = json.loads(json.dumps(as_dict([LEAK])))
+    assert answer["goals"][0]["count"] == answer["goals"][0]["of"] == 1
+    assert Outcome(**answer["outcomes"][0]) == LEAK

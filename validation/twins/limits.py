@@ -1,0 +1,184 @@
+"""Detection limits: the smallest size of each effect that two records can show at all.
+
+The records are cut into stretches of a second whose initial states are unknown, as a diagnosis
+would treat them. A change dy of all signals, divided by their noise, loses in every stretch what
+an initial state imitates and, over all stretches, what the declared numbers imitate within their
+half widths. With i the information left,
+
+    i = d'd - d'N (N'N + P)^-1 N'd,        d, N after the stretches' own projections
+
+the size counts as detectable where sqrt(i) = SIGMAS (five standard deviations of the best
+estimate), and where the change that is left has FLOOR of the noise's RMS in at least one signal:
+below that the unavoidable differences between two descriptions of one machine are as large.
+Coloured noise counts as white noise of the same density at low frequency, which is on the safe
+side.
+
+    python -m validation.trials limits bench
+
+makes the tables in limits/, which the draws read.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.twins.air import Array
+from validation.twins.declared import as_declared
+from validation.twins.effects import Effect
+from validation.twins.instruments import Channel, channel_of
+from validation.twins.measured import VirtualRig
+from validation.twins.truth import Truth
+
+SIGMAS = 5.0
+FLOOR = 0.5
+STRETCH = 1.0
+"""s, the length of a stretch."""
+FOLDER = Path(__file__).parent / "limits"
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A second of one record."""
+
+    time: float
+    commands: Mapping[str, Array]
+    start: Array
+    signals: Mapping[str, Array]
+    basis: Array  # orthonormal, what an initial state imitates
+
+
+def spread(channel: Channel, step: float) -> float:
+    """Standard deviation of white noise that hides a slow change as well as this channel's."""
+    white = channel.white**2 + channel.step**2 / 12.0
+    return float(np.sqrt(white + channel.coloured**2 * 2.0 * channel.correlation_time / step))
+
+
+class Limits:
+    """Sensitivities of one rig, as declared, on given runs."""
+
+    def __init__(self, rig: VirtualRig, plans: Sequence[Any], every: int = 1) -> None:
+        """With `every` > 1 only so many of the stretches stand for all."""
+        self.rig = rig
+        self.every = every
+        self.truth = as_declared(Truth(), rig.declared)
+        self.weights = {
+            signal: 1.0 / spread(channel_of(signal), rig.sample_step) for signal in rig.signals
+        }
+        self.stretches = [stretch for plan in plans for stretch in self._cut(plan)]
+        movable = [d for d in rig.declared if d.name is not None and d.half_width > 0.0]
+        self.nuisances = np.column_stack(
+            [self._scaled(str(d.name), 0.2 * d.half_width, d.half_width) for d in movable]
+        )
+
+    def _cut(self, plan: Any) -> list[Stretch]:
+        rig = self.rig
+        quiet = dict.fromkeys(rig.signals, np.zeros(round(rig.duration / rig.sample_step) + 1))
+        measured = rig.measure(self.truth, plan, quiet)
+        length = round(STRETCH / rig.sample_step)
+        stretches = []
+        for first in range(
+            0, round(rig.duration / rig.sample_step) - length + 1, self.every * length
+        ):
+            commands = {k: v[first : first + length + 1] for k, v in measured.commands.items()}
+            start, time = measured.states[first], first * rig.sample_step
+            signals = rig.window(self.truth, commands, start, time)
+            plain = Stretch(time, commands, start, signals, np.zeros((0, 0)))
+            columns = []
+            for state, step in zip(rig.window_states, rig.state_steps, strict=True):
+                moved = start.copy()
+                moved[state] += step
+                columns.append(
+                    self._difference(plain, rig.window(self.truth, commands, moved, time))
+                )
+            basis = np.linalg.qr(np.column_stack(columns) / np.linalg.norm(columns, axis=1))[0]
+            stretches.append(Stretch(time, commands, start, signals, basis))
+        return stretches
+
+    def _difference(self, stretch: Stretch, signals: Mapping[str, Array]) -> Array:
+        return np.concatenate(
+            [self.weights[s] * (signals[s] - stretch.signals[s]) for s in self.rig.signals]
+        )
+
+    def change(self, truth: Truth) -> Array:
+        """Whitened change of all signals against the healthy rig, less the initial states'."""
+        parts = []
+        for s in self.stretches:
+            d = self._difference(s, self.rig.window(truth, s.commands, s.start, s.time))
+            parts.append(d - s.basis @ (s.basis.T @ d))
+        return np.concatenate(parts)
+
+    def _scaled(self, name: str, step: float, half: float) -> Array:
+        """Change for half a half width: that is the prior's standard deviation."""
+        moved = self.truth.having(**{name: self.truth.value(name) + step})
+        return self.change(moved) * (0.5 * half / step)
+
+    def left(self, change: Array, effect: Effect) -> tuple[float, float]:
+        """sqrt(information) of a change, and its largest RMS in a signal over that one's noise."""
+        names = [d.name for d in self.rig.declared if d.name is not None and d.half_width > 0.0]
+        own = [name not in effect.names for name in names]
+        n = np.sqrt(self.every) * self.nuisances[:, own]
+        change = np.sqrt(self.every) * change
+        normal = n.T @ n + np.eye(n.shape[1])
+        share = np.linalg.solve(normal, n.T @ change)
+        rest = change - n @ share
+        information = float(rest @ rest + share @ share)
+        count = len(self.rig.signals)
+        by_signal = rest.reshape(len(self.stretches), count, -1)
+        rms = np.sqrt(np.mean(by_signal**2, axis=(0, 2)) / self.every)
+        of_noise = [
+            r / self.weights[s] / channel_of(s).deviation
+            for r, s in zip(rms, self.rig.signals, strict=True)
+        ]
+        return float(np.sqrt(information)), float(max(of_noise))
+
+    def seen(self, effect: Effect, size: float) -> float:
+        """How many times over an effect of this size is detectable; 1 is its limit."""
+        sigmas, share = self.left(
+            self.change(effect.hidden_in(self.truth, effect.sense * size)), effect
+        )
+        return min(sigmas / SIGMAS, share / FLOOR)
+
+    def limit(self, effect: Effect) -> float | None:
+        """The detectable size; None when even the largest cannot be seen."""
+        size = effect.first_step
+        for _ in range(5):
+            seen = self.seen(effect, size)
+            if not np.isfinite(seen):
+                return None
+            if 0.8 < seen < 1.25:
+                return size / seen
+            size = min(size / max(seen, 0.03), effect.largest)
+            if size == effect.largest and seen < 1.0 and self.seen(effect, size) < 1.0:
+                return None
+        return size
+
+
+def table(
+    rig: VirtualRig, effects: Sequence[Effect], names: Sequence[str], seed: int, every: int = 1
+) -> Any:
+    """Limits of effects on two runs excited by `names`: what a limits/ file holds."""
+    rng = np.random.default_rng(seed)
+    limits = Limits(rig, [rig.plan(name, rng) for name in names], every)
+    rows = {}
+    for effect in effects:
+        if effect.drawn_from is None:
+            found = limits.limit(effect)
+            rows[effect.key] = None if found is None else float(f"{found:.3g}")
+    return {"excitation": list(names), "limits": rows}
+
+
+def path_of(kind: str) -> Path:
+    """Where the table of a rig is kept."""
+    return FOLDER / f"{kind}.json"
+
+
+def read(kind: str) -> dict[str, dict[str, float | None]]:
+    """By excitation pair ("multisine+holds"), the limits by effect key."""
+    rows = json.loads(path_of(kind).read_text())
+    return {"+".join(row["excitation"]): row["limits"] for row in rows}

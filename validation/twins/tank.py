@@ -1,0 +1,92 @@
+"""The tank of the flow test: a vessel of constant volume behind one port of the valve.
+
+Above the valve's centre the supply fills it, below it is vented. Without heat its air keeps its
+temperature (eq. 5.5), as the tables were measured; with a heat transfer coefficient the full
+energy equation holds and the temperature is a state.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from validation.reference.compiled import compiled
+from validation.twins.air import (
+    Array,
+    chamber_rate,
+    edges,
+    leaks,
+    supply_now,
+    valve_inflow,
+    valve_map,
+)
+from validation.twins.bench import command_at
+from validation.twins.machine import Machine
+
+SAMPLE_STEP = 5.0e-3
+STEPS = 10
+FINE = 5
+STATES = 5
+"""p, T | spool, its rate | reservoir."""
+
+
+@compiled
+def derivative(
+    p: Machine, time: float, map_: Array, y: Array, play: float, command: float, dy: Array
+) -> None:
+    """dy/dt of the tank."""
+    warm = p.heat_transfer_coefficient > 0.0
+    t = y[1] if warm else p.air_temperature
+    head = supply_now(p, time)
+    feed = y[4] if p.supply_line_resistance > 0.0 else head
+    edge = edges(p, time, map_, y[2] + play)
+    from_supply, from_exhaust = valve_inflow(p, edge, False, feed, y[0], t)
+    lost = leaks(p, False, y[0])
+    inward = max(from_supply, 0.0) + max(from_exhaust, 0.0) + max(-lost, 0.0)
+    outward = max(-from_supply, 0.0) + max(-from_exhaust, 0.0) + max(lost, 0.0)
+    room = (p.tank_volume, 0.0, p.tank_wall_area)
+    dy[0], dy[1] = chamber_rate(p, y[0], t, room, inward, inward * p.air_temperature, outward)
+    omega = 2.0 * pi * p.valve_frequency
+    dy[2] = y[3]
+    dy[3] = omega * (omega * (command - y[2]) - 2.0 * p.valve_damping_ratio * y[3])
+    dy[4] = 0.0
+    if p.supply_line_resistance > 0.0:
+        stiffness = p.compression_heat_ratio * p.gas_constant * p.air_temperature
+        filling = (head - y[4]) / p.supply_line_resistance
+        dy[4] = stiffness / p.reservoir_volume * (filling - from_supply)
+
+
+@compiled
+def run(
+    p: Machine, map_: Array, y: Array, commands: Array, states: Array, start_time: float
+) -> None:
+    """Fills `states`, FINE points a sample."""
+    dt, every = SAMPLE_STEP / STEPS, STEPS // FINE
+    k, between = np.zeros((4, STATES)), np.zeros(STATES)
+    weight = np.array([0.0, 0.5, 0.5, 1.0])
+    seat, play = y[2], 0.0
+    states[0] = y
+    for sample in range(commands.size - 1):
+        for step in range(STEPS):
+            t = sample * SAMPLE_STEP + step * dt
+            if p.sticky_spool > 0.0:
+                seat = min(max(seat, y[2] - p.sticky_spool), y[2] + p.sticky_spool)
+                play = seat - y[2]
+            for stage in range(4):
+                for j in range(STATES):
+                    between[j] = y[j] + weight[stage] * dt * k[max(stage - 1, 0), j]
+                now = t + weight[stage] * dt
+                u = command_at(commands, now - p.command_delay)
+                derivative(p, start_time + now, map_, between, play, u, k[stage])
+            for j in range(STATES):
+                y[j] += dt / 6.0 * (k[0, j] + 2.0 * k[1, j] + 2.0 * k[2, j] + k[3, j])
+            if (step + 1) % every == 0:
+                states[sample * FINE + (step + 1) // every] = y
+
+
+def follow(p: Machine, commands: Array, start: Array, start_time: float) -> Array:
+    """States under commands in V, one a sample, from a given state, (n, STATES)."""
+    states = np.zeros(((commands.size - 1) * FINE + 1, STATES))
+    run(p, valve_map(), start.copy(), commands, states, start_time)
+    return states

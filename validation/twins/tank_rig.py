@@ -1,0 +1,90 @@
+"""The tank as a rig to be measured: its runs, its signals, its windows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from validation.twins import bench, tank
+from validation.twins.air import Array
+from validation.twins.declared import TANK, Declared
+from validation.twins.effects import SIGNALS
+from validation.twins.instruments import disturbed
+from validation.twins.measured import Measured, sample_times
+from validation.twins.truth import Truth
+
+RAMP = 0.02
+"""s that a change of the command takes."""
+
+
+class TankRig:
+    """Kind "tank"."""
+
+    kind = "tank"
+    title = "Virtual tank of the flow test"
+    declared: tuple[Declared, ...] = TANK
+    signals = SIGNALS["tank"]
+    commands = ("valve_command",)
+    sample_step = tank.SAMPLE_STEP
+    duration = 8.0
+    window_states = (0,)
+    state_steps = (500.0,)
+
+    def plan(self, excited_by: str, rng: np.random.Generator) -> Array:
+        """Commands in V of a run: "strokes" fills and vents, "bursts" does it bit by bit."""
+        time = sample_times(self.duration, self.sample_step)
+        knots, volts, up = [0.0, 0.3], [5.0, 5.0], True
+        while knots[-1] < time[-1]:
+            if excited_by == "strokes":
+                wide, hold, pause = rng.uniform(0.9, 1.6), rng.uniform(0.7, 1.2), 0.3
+            else:
+                wide, hold, pause = rng.uniform(0.7, 2.5), rng.uniform(0.05, 0.15), 0.35
+            turn = up if excited_by == "strokes" else len(knots) % 40 < 20
+            volt = 5.0 + (wide if turn else -wide)
+            start = knots[-1]
+            knots += [start + RAMP, start + RAMP + hold, start + 2.0 * RAMP + hold]
+            volts += [volt, volt, 5.0]
+            knots.append(knots[-1] + pause)
+            volts.append(5.0)
+            up = not up
+        return np.asarray(np.interp(time, knots, volts), dtype=np.float64)
+
+    def measure(self, truth: Truth, plan: Array, reading_noise: Mapping[str, Array]) -> Measured:
+        """One run from ambient pressure; there is no loop."""
+        p = truth.machine
+        start = np.array([p.ambient_pressure + 5e4, p.air_temperature, 5.0, 0.0, p.supply_pressure])
+        states = tank.follow(p, plan, start, 0.0)
+        return Measured(
+            {"valve_command": plan},
+            {},
+            self._signals(truth, states),
+            np.ascontiguousarray(states[:: tank.FINE]),
+        )
+
+    def window(
+        self, truth: Truth, commands: Mapping[str, Array], start: Array, time: float
+    ) -> Mapping[str, Array]:
+        """The signals of a stretch of a record, from a given state, under recorded commands."""
+        start = start.copy()
+        start[4] = truth.machine.supply_pressure
+        return self._signals(
+            truth, tank.follow(truth.machine, commands["valve_command"], start, time)
+        )
+
+    def _signals(self, truth: Truth, states: Array) -> dict[str, Array]:
+        step, p = self.sample_step / tank.FINE, truth.machine
+        supply, warmth = states[:, 4], states[:, 1]
+        if p.supply_line_resistance <= 0.0:
+            supply = bench.heads(p, sample_times(step * (states.shape[0] - 1), step))
+        if p.heat_transfer_coefficient <= 0.0:
+            warmth = np.full(states.shape[0], p.air_temperature)
+        fine = {
+            "tank_pressure": states[:, 0],
+            "tank_temperature": warmth,
+            "supply_pressure": supply,
+        }
+        return {
+            name: disturbed(signal, step, tank.FINE, truth.errors[name])
+            for name, signal in fine.items()
+        }
