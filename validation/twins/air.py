@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
+from validation.reference import iso6358
 from validation.reference.compiled import compiled
 from validation.reference.steffen import steffen_slopes
 from validation.twins.machine import Machine
@@ -28,6 +29,7 @@ GRID_STEP = 0.01
 GRID_POINTS = 501
 LAMINAR_FROM = 0.9985
 """Pressure ratio from which the flow falls straight to zero."""
+ATMOSPHERE = (iso6358.DENSITY, iso6358.TEMPERATURE)
 FIRST_ROW = 0.559
 """V from the centre: the first printed row."""
 
@@ -82,20 +84,14 @@ def valve_map() -> Array:
 @compiled
 def mass_flow(p: Machine, c: float, b: float, m: float, from_: float, t: float, to: float) -> float:
     """kg/s through one component from the pressure `from_` (at t kelvin) to a lower one `to`."""
-    choked = c * 1.185 * sqrt(293.15 / t) * from_
-    ratio = to / from_
-    if ratio <= b:
-        return choked
-    lowest = ratio if ratio < LAMINAR_FROM else LAMINAR_FROM
-    flow = choked * sqrt(1.0 - ((lowest - b) / (1.0 - b)) ** m)
-    return flow if ratio < LAMINAR_FROM else flow * (1.0 - ratio) / (1.0 - LAMINAR_FROM)
+    return iso6358.mass_flow((c, b, m), from_, t, to, ATMOSPHERE, LAMINAR_FROM)
 
 
 @compiled
 def leak(p: Machine, c: float, p1: float, t1: float, p2: float, t2: float) -> float:
     """kg/s through a narrow gap from 1 to 2: sqrt(p1^2 - p2^2), straight within 0.1 percent."""
     high, low, t = (p1, p2, t1) if p1 >= p2 else (p2, p1, t2)
-    choked = c * 1.185 * sqrt(293.15 / t) * high
+    choked = iso6358.choked_flow(c, high, t, ATMOSPHERE[0], ATMOSPHERE[1])
     ratio = low / high
     edge = ratio if ratio < 0.999 else 0.999
     size = choked * sqrt(1.0 - edge * edge)

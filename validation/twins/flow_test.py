@@ -9,8 +9,7 @@ Written from the laws alone; it does not import, call or copy the core. What dif
   noise;
 - noise, resolution and the lower end of the sensor's range come on top.
 
-The law of the component is ISO 6358's with the exponent inside the root, as the source's tables use
-it. SI units, pressures absolute.
+The law of the component is that of reference/iso6358.py. SI units, pressures absolute.
 """
 
 from __future__ import annotations
@@ -22,11 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import odeint
 
+from validation.reference import iso6358
+
 Array = NDArray[np.float64]
 
 R = 288.0  # J/(kg K)
-RHO_0 = 1.185  # kg/m3
-T_0 = 293.15  # K
+ATMOSPHERE = (iso6358.DENSITY, iso6358.TEMPERATURE)
 
 
 @dataclass(frozen=True)
@@ -39,16 +39,10 @@ class Component:
 
     def mass_flow(self, high: float, low: float, temperature: float) -> float:
         """kg/s from `high` to `low`."""
-        r = low / high
-        if r >= 1.0:
+        if low >= high:
             return 0.0
-        choked = high * self.conductance * RHO_0 * sqrt(T_0 / temperature)
-        if r <= self.ratio:
-            return choked
-        if r <= 0.999:
-            return choked * sqrt(1.0 - ((r - self.ratio) / (1.0 - self.ratio)) ** self.index)
-        edge = sqrt(1.0 - ((0.999 - self.ratio) / (1.0 - self.ratio)) ** self.index)
-        return choked * edge * (1.0 - r) / 0.001
+        component = (self.conductance, self.ratio, self.index)
+        return iso6358.mass_flow(component, high, temperature, low, ATMOSPHERE, 0.999)
 
 
 @dataclass(frozen=True)

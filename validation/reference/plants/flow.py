@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
+from validation.reference import iso6358
 from validation.reference.compiled import compiled
 from validation.reference.plants.numbers import Numbers
 from validation.reference.steffen import steffen_slopes
@@ -88,15 +89,8 @@ def classic_flow(p: Numbers, area: float, p1: float, t1: float, p2: float) -> fl
 @compiled
 def iso_flow(p: Numbers, c: float, b: float, m: float, p1: float, t1: float, p2: float) -> float:
     """kg/s from p1 at t1 to a lower p2, eq. 5.8 and 5.9."""
-    if p1 <= 0.0:
-        return 0.0
-    choked = p1 * c * p.reference_density * sqrt(p.reference_temperature / t1)
-    ratio = p2 / p1
-    if ratio <= b:
-        return choked
-    r = min(ratio, 0.999)
-    flow = choked * sqrt(1.0 - ((r - b) / (1.0 - b)) ** m)
-    return flow if ratio < 0.999 else flow * (1.0 - ratio) / 0.001
+    atmosphere = (p.reference_density, p.reference_temperature)
+    return iso6358.mass_flow((c, b, m), p1, t1, p2, atmosphere, 0.999)
 
 
 @compiled
