@@ -7,12 +7,12 @@ import pytest
 from sms.diagnosis.adequacy.repeatability import repeatability
 from sms.estimation.block_statistics import (
     covariance_of,
-    merge_strokes,
+    merge_windows,
     project_off,
     resampled,
     score_test,
-    strokes_per_block,
     weighted_ms,
+    windows_per_block,
 )
 
 from validation.random_cases import draw
@@ -44,7 +44,7 @@ def test_healthy_but_coloured_data_names_nothing(rng: np.random.Generator) -> No
         columns = project_off(columns, np.ones((n, 1)))
         residual = project_off(residual[:, None], np.ones((n, 1)))[:, 0]
         record = np.zeros(n, dtype=np.int64)
-        block = merge_strokes(record, stroke, strokes_per_block(residual, record, stroke))
+        block = merge_windows(record, stroke, windows_per_block(residual, record, stroke))
         alarms += bool(np.min(score_test(columns, residual, block, rng, draws=999).p_value) < 0.05)
         naive = np.abs(columns.T @ residual) / np.linalg.norm(columns, axis=0) / residual.std()
         naive_alarms += bool(
@@ -124,9 +124,9 @@ def test_a_drift_is_told_from_scatter(rng: np.random.Generator) -> None:
 
 def test_blocks_hold_several_strokes_only_where_noise_lasts_long(rng: np.random.Generator) -> None:
     stroke, record, *_ = simulated_strokes(rng)
-    assert strokes_per_block(rng.normal(size=len(stroke)), record, stroke) == 1
-    assert strokes_per_block(coloured(rng, len(stroke), 0.99), record, stroke) > 1
-    block = merge_strokes(record, stroke, 3)
+    assert windows_per_block(rng.normal(size=len(stroke)), record, stroke) == 1
+    assert windows_per_block(coloured(rng, len(stroke), 0.99), record, stroke) > 1
+    block = merge_windows(record, stroke, 3)
     assert len(np.unique(block)) == 14  # 20 strokes a record in threes, twice
     assert np.all(np.diff(block) >= 0)
 

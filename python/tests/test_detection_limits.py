@@ -53,13 +53,13 @@ def test_the_command_writes_table_and_page(short_menu: None, tmp_path: Path) -> 
     )
     assert done.exit_code == 0
     assert "1  Bursts of a tenth of a second" in done.output
-    rows = list(csv.DictReader((tmp_path / "out" / "detection_limits.csv").open()))
+    rows = list(csv.DictReader((tmp_path / "out" / "limits.csv").open()))
     assert len({r["experiment"] for r in rows}) == 2
     size = {(r["effect"], r["experiment"]): float(r["size"] or "inf") for r in rows}
     late = [v for (e, _), v in size.items() if e == "command_delay"]
     assert late[0] < 0.7 * late[1]  # what is late shows where the valve is opened often
     assert all(r["reason"] for r in rows if not r["size"])
-    page = (tmp_path / "out" / "detection_limits.html").read_text()
+    page = (tmp_path / "out" / "limits.html").read_text()
     assert "Detection limits" in page and 'class="heat"' in page
 
 

@@ -12,7 +12,7 @@ from rich.console import Console
 from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.simulated import make_data
+from sms.diagnosis.preparation import make_data
 from sms.estimation.run import Run
 from sms.io import InputError, load_rig
 from sms.io.records import load_record

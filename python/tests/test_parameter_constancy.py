@@ -16,7 +16,8 @@ from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
 from sms.diagnosis.localisation.activity import activity, own_signals
 from sms.diagnosis.pipeline import read_and_check
-from sms.diagnosis.simulated import investigate, make_data
+from sms.diagnosis.preparation import make_data
+from sms.diagnosis.simulated import investigate
 from sms.diagnosis.thresholds import KNOTS
 from sms.estimation.windows import Runs
 from sms.io.rig import load_rig
@@ -67,7 +68,6 @@ def test_a_footprint_is_that_of_hidden_inputs_and_its_parts_add_up(tmp_path: Pat
     leak = "fitting_leakage of lower"
     data, fitted = fitted_to(tmp_path, "tank", "fitting_leakage", SEED % 10_000, leak)
     runs = data.identify
-    assert isinstance(runs, Runs)
     column = column_of(runs, fitted, fitted.hypothesis.causes[0])
     found = activity(runs, fitted.params, column)
     assert found is not None
@@ -87,7 +87,6 @@ def test_what_jumps_from_sample_to_sample_acts_on_no_equation(tmp_path: Path) ->
     delay = "command_delay"
     data, fitted = fitted_to(tmp_path, "tank", "command_delay", 3, delay)
     runs = data.identify
-    assert isinstance(runs, Runs)
     assert activity(runs, fitted.params, np.where(runs.sample % 2 == 0, 1.0, -1.0)) is None
     late = fitted.hypothesis.causes[0]
     assert activity(runs, fitted.params, column_of(runs, fitted, late)) is None

@@ -12,9 +12,8 @@ from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_recor
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, nuisance_of
 from sms.diagnosis.pipeline import read_and_check
-from sms.diagnosis.simulated import make_data
+from sms.diagnosis.preparation import make_data
 from sms.estimation.nuisance import project
-from sms.estimation.windows import Runs
 from sms.io.rig import load_rig
 
 from validation.random_cases import SEED
@@ -53,7 +52,6 @@ def test_of_one_record_alone_it_is_the_linear_estimate_beside_all_that_is_free(
 ) -> None:
     data, fitted = with_a_leak(tmp_path, "tank", "fitting_leakage", 3)
     runs = data.identify
-    assert isinstance(runs, Runs)
     leak = fitted.hypothesis.causes[0]
     name = leak.parameters[0]
     others = nuisance_of(fitted).without(name)

@@ -26,7 +26,8 @@ from sms.diagnosis.adequacy.subset_estimates import found_value
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.hypothesis import fit
 from sms.diagnosis.pipeline import read_and_check
-from sms.diagnosis.simulated import Case, investigate, make_data
+from sms.diagnosis.preparation import make_data
+from sms.diagnosis.simulated import Case, investigate
 from sms.io.rig import load_rig
 
 from validation.trials.scoring import Outcome, confusion, goals, load

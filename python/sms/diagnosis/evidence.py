@@ -7,16 +7,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sms import _core
 from sms.arrays import Array, Index
 from sms.diagnosis.adequacy.repeatability import Repeatability, arrangement
-from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    fit,
+    refitted,
+    refitted_on,
+    residual_of,
+    residual_on,
+)
 from sms.diagnosis.localisation.ripple import find_ripple
 from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Remainder, Series
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.forward_selection import Outcome, Round
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
+from sms.estimation.kind import Kind
+from sms.estimation.run import Run
 from sms.estimation.windows import Runs
-from sms.rigs.cylinder import Comparison, Motion, inputs_of, predict
 
 
 def value_of(fitted: Fitted, name: str, old: float, error: float | None = None) -> ParameterValue:
@@ -108,10 +118,9 @@ class RecordEstimate:
 
 def record_by_record(fitted: Fitted, name: str, data: Data) -> list[RecordEstimate]:
     out = []
-    for comparison in (data.identify, data.validate):
-        assert isinstance(comparison, Comparison)
-        for number, motion in enumerate(comparison.motions):
-            residual, jacobian = comparison.part(number).problem.evaluate(fitted.params, [name])
+    for runs in (data.identify, data.validate):
+        for number, motion in enumerate(runs.motions):
+            residual, jacobian = runs.part(number).problem.evaluate(fitted.params, [name])
             column = jacobian[:, 0]
             information = max(float(column @ column), 1e-300)
             step = -float(column @ residual) / information
@@ -120,20 +129,17 @@ def record_by_record(fitted: Fitted, name: str, data: Data) -> list[RecordEstima
 
 
 def gains(
-    baseline: Fitted, extended: Fitted, data: Data, floor: float, rng: np.random.Generator
+    baseline: Fitted, extended: Fitted, data: Data, floor: Array, rng: np.random.Generator
 ) -> tuple[Gain, ...]:
-    """What the extension is worth on each record it has not seen."""
-    out = []
-    for comparison in (data.validate, data.test):
-        if not isinstance(comparison, Comparison):
-            continue
-        for number, motion in enumerate(comparison.motions):
-            part = comparison.part(number)
-            b = residual_of(part, baseline.params) ** 2
-            e = residual_of(part, extended.params) ** 2
-            counts = resampled(part.record, part.block, rng)
-            where = Where(motion.name, "rod_force", "N", motion.role)
-            out.append(gain_of(where, b, e, part.block, counts, floor))
+    """What the extension is worth on each record it has not seen, and each signal, in the signal's unit.
+
+    floor (channels,): mean square of what no model of the state explains, in the residual's unit.
+    """
+    out: list[Gain] = []
+    for runs in (data.validate, data.test):
+        if runs is not None:
+            before, after = (residual_on(f, data, runs) for f in (baseline, extended))
+            out += gains_on(runs, before, after, floor, rng)
     return tuple(out)
 
 
@@ -192,7 +198,6 @@ def gains_on(
 def remainder_of(
     extended: Fitted, data: Data, before: Repeatability, after: Repeatability
 ) -> Remainder:
-    assert isinstance(data.validate, Comparison)
     residual = residual_of(data.validate, extended.params)
     ms = float(np.mean(residual**2))
     return Remainder(
@@ -207,19 +212,56 @@ def remainder_of(
     )
 
 
-def series_of(motion: Motion, baseline: Fitted, extended: Fitted) -> Series:
-    return Series(
-        motion.name,
-        motion.role,
-        "rod_force",
-        "N",
-        motion.time,
-        motion.signals["rod_force"],
-        predict(motion, baseline.params),
-        predict(motion, extended.params),
-        motion.used,
-        inputs_of(motion),
+def series_of(baseline: Fitted, final: Fitted, data: Data) -> tuple[Series, ...]:
+    """Measured and predicted curves of all records: identify, validate, test."""
+    parts = [part for part in (data.identify, data.validate, data.test) if part is not None]
+    return tuple(s for part in parts for s in _series(part, baseline, final, data))
+
+
+def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Series]:
+    """Measured and predicted curves of one role, window by window from the best initial states."""
+    whole = part.whole
+    base, extended = (
+        whole.problem.errors(_params_on(fitted, data, part)) for fitted in (baseline, final)
     )
+    out = []
+    for number, run in enumerate(part.motions):
+        for c, channel in enumerate(part.channels):
+            rows = (whole.record == number) & (whole.channel == c)
+            places = whole.sample[rows]
+            measured = run.signals[channel]
+            curves = measured.copy(), measured.copy()
+            for curve, errors in zip(curves, (base, extended), strict=True):
+                curve[places] += errors[rows] * part.noise[channel]
+            used = np.zeros(len(run.time), dtype=np.bool_)
+            used[part.sample[(part.record == number) & (part.channel == c)]] = True
+            out.append(
+                Series(
+                    run.name,
+                    run.role,
+                    channel,
+                    part.kind.units[channel],
+                    run.time,
+                    measured,
+                    *curves,
+                    used,
+                    _along(part.kind, run),
+                )
+            )
+    return out
+
+
+def _params_on(fitted: Fitted, data: Data, part: Runs) -> _core.Params:
+    """The model on records of one role: what is known may move within what is declared where they are simulated."""
+    if part is data.identify or not part.whitened:
+        return fitted.params
+    return (refitted(fitted, data) if part is data.validate else refitted_on(fitted, part)).params
+
+
+def _along(kind: Kind, run: Run) -> dict[str, Array]:
+    """(n,) each: what the report draws errors over."""
+    found = {f"{n} [{kind.units[n]}]": run.signals[n] for n in kind.shown if n in run.signals}
+    return found | kind.derived(run) | {"time [s]": run.time - run.time[0]}
 
 
 def candidates_of(rounds: Sequence[Round]) -> tuple[Candidate, ...]:

@@ -15,12 +15,11 @@ from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.estimation.block_statistics import covariance_of, project_off
-from sms.estimation.least_squares import Free, Solution, changed, fit_windows
+from sms.estimation.least_squares import Free, Solution, changed
 from sms.estimation.nuisance import Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import PARAMETERS, Parameter
-from sms.rigs.cylinder import Comparison
 
 ALWAYS_UNCERTAIN = ("stiction_shape",)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
@@ -39,6 +38,8 @@ class Hypothesis:
     causes: tuple[Effect, ...] = ()
     table: Mapping[str, Parameter] = field(default_factory=lambda: PARAMETERS, repr=False)
     """Bounds and units of every parameter."""
+    sample: float = 1.0
+    """Standard deviation of a residual: 1 where they are in units of the noise, else that of the declared model."""
 
     def with_effect(self, effect: Effect) -> Hypothesis:
         """The effect's parameters freed within their bounds."""
@@ -81,9 +82,9 @@ class Data:
     """The records of a rig, by role."""
 
     rig: Rig
-    identify: Comparison | Runs
-    validate: Comparison | Runs
-    test: Comparison | Runs | None = None
+    identify: Runs
+    validate: Runs
+    test: Runs | None = None
     """Records on which gains are reported and nothing is decided."""
     unseen_of: dict[int, tuple[Fitted, Fitted]] = field(default_factory=dict, repr=False)
     """What `unseen` has worked out already."""
@@ -118,46 +119,42 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
                 max(bounds.lower, declared.value - declared.uncertainty),
                 min(bounds.upper, declared.value + declared.uncertainty),
             )
-    _, jacobian = data.identify.problem.evaluate(start, list(free))
+    residual, jacobian = data.identify.problem.evaluate(start, list(free))
     seen = np.linalg.norm(jacobian, axis=0) > 0.0
     movable = {n: b for n, b, s in zip(free, free.values(), seen, strict=True) if s}
-    return Hypothesis(start, movable, uncertain, table=rig.table)
+    sample = 1.0 if data.identify.whitened else float(np.sqrt(np.mean(residual**2)))
+    return Hypothesis(start, movable, uncertain, table=rig.table, sample=sample)
 
 
-def fit(
-    hypothesis: Hypothesis, comparison: Comparison | Runs, initial: _core.Params | None = None
-) -> Fitted:
-    """Least squares over the hypothesis' free parameters, with block-robust covariance."""
-    if isinstance(comparison, Runs):
-        return _fit_runs(hypothesis, comparison, initial or hypothesis.start)
-    before, _ = comparison.problem.evaluate(hypothesis.start)
-    sample = float(np.sqrt(np.mean(before**2)))
-    free = [
-        (name, *bounds, sample / hypothesis.known[name] if name in hypothesis.known else 0.0)
-        for name, bounds in hypothesis.free.items()
-    ]
-    result = _core.fit(comparison.problem, hypothesis.start, free)
-    covariance = np.zeros((len(free), len(free)))
-    moved = np.flatnonzero(~np.array(result.at_bound, dtype=bool))
-    if len(moved):
-        covariance[np.ix_(moved, moved)] = covariance_of(
-            result.jacobian[:, moved], result.residual, comparison.block
-        )
-    return Fitted(hypothesis, result, covariance)
+def fit(hypothesis: Hypothesis, runs: Runs, initial: _core.Params | None = None) -> Fitted:
+    """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks."""
+    free = free_of(hypothesis)
+    found = runs.fit(initial or hypothesis.start, free)
+    covariance = _covariance(found, free, runs)
+    held = np.array(found.at_bound, dtype=bool)
+    covariance[held, :] = covariance[:, held] = 0.0
+    return Fitted(hypothesis, found, covariance)
 
 
 def free_of(hypothesis: Hypothesis) -> list[Free]:
     """The free parameters, each pulled to what is declared."""
-    known, start = hypothesis.known, hypothesis.start
+    h = hypothesis
     return [
-        Free(n, low, high, 1.0 / known[n] if n in known else 0.0, start[n])
-        for n, (low, high) in hypothesis.free.items()
+        Free(n, low, high, h.sample / h.known[n] if n in h.known else 0.0, h.start[n])
+        for n, (low, high) in h.free.items()
     ]
 
 
-def _fit_runs(hypothesis: Hypothesis, runs: Runs, initial: _core.Params) -> Fitted:
-    free = free_of(hypothesis)
-    found = fit_windows(runs.problem, initial, free)
+def _covariance(found: Solution, free: list[Free], runs: Runs) -> Array:
+    """(free, free). Without a declared noise the blocks alone say how sure an estimate is."""
+    covariance = np.zeros((len(free), len(free)))
+    if not runs.whitened:
+        moved = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
+        if len(moved):
+            covariance[np.ix_(moved, moved)] = covariance_of(
+                found.jacobian[:, moved], found.residual, runs.block
+            )
+        return covariance
     pull = np.array([f.pull for f in free])
     bread = np.linalg.pinv(found.jacobian.T @ found.jacobian + np.diag(pull**2), hermitian=True)
     noise = max(float(np.mean(found.residual**2)), 1e-12)
@@ -165,29 +162,29 @@ def _fit_runs(hypothesis: Hypothesis, runs: Runs, initial: _core.Params) -> Fitt
     # With more parameters than windows the robust one has too low a rank: the larger of the two variances holds.
     inflate = np.sqrt(np.maximum(np.diag(robust) / np.maximum(np.diag(noise * bread), 1e-300), 1.0))
     inflate = np.minimum(inflate, 10.0)
-    covariance = noise * bread * np.outer(inflate, inflate)
-    for k, held in enumerate(found.at_bound):
-        if held:
-            covariance[k, :] = covariance[:, k] = 0.0
-    return Fitted(hypothesis, found, covariance)
+    return np.asarray(noise * bread * np.outer(inflate, inflate))
 
 
-def residual_of(comparison: Comparison | Runs, params: _core.Params) -> Array:
-    residual, _ = comparison.problem.evaluate(params)
+def residual_of(runs: Runs, params: _core.Params) -> Array:
+    residual, _ = runs.problem.evaluate(params)
     return np.asarray(residual)
 
 
 def unseen(fitted: Fitted, data: Data) -> Array:
-    """(rows,) residuals on the validate records.
+    """(rows,) residuals on the validate records; what was found on the identify records stays."""
+    return residual_on(fitted, data, data.validate)
+
+
+def residual_on(fitted: Fitted, data: Data, runs: Runs) -> Array:
+    """(rows,) residuals on the validate or test records.
 
     Where a simulation is held against them, the known parameters may move within their declared uncertainty on these
-    records too (another day, another temperature); what was found on the identify records stays.
+    records too (another day, another temperature).
     """
-    return (
-        refitted(fitted, data).fit.residual
-        if data.validate.whitened
-        else residual_of(data.validate, fitted.params)
-    )
+    if not runs.whitened:
+        return residual_of(runs, fitted.params)
+    at = refitted(fitted, data) if runs is data.validate else refitted_on(fitted, runs)
+    return at.fit.residual
 
 
 def refitted(fitted: Fitted, data: Data) -> Fitted:
@@ -197,20 +194,20 @@ def refitted(fitted: Fitted, data: Data) -> Fitted:
     return data.unseen_of[id(fitted)][1]
 
 
-def refitted_on(fitted: Fitted, comparison: Comparison | Runs) -> Fitted:
+def refitted_on(fitted: Fitted, runs: Runs) -> Fitted:
     """The model on other records: what is known may move there too, its causes are held."""
     h = fitted.hypothesis
     held = {n for cause in h.causes for n in cause.parameters}
     free = {n: bounds for n, bounds in h.free.items() if n not in held}
     start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
     known = {n: u for n, u in h.known.items() if n not in held}
-    return fit(replace(h, start=start, free=free, known=known), comparison, fitted.params)
+    return fit(replace(h, start=start, free=free, known=known), runs, fitted.params)
 
 
-def sensitivities(fitted: Fitted, comparison: Comparison | Runs, names: list[str]) -> Array:
+def sensitivities(fitted: Fitted, runs: Runs, names: list[str]) -> Array:
     """(rows, names): how the residual changes with each parameter, beyond what the free ones can undo."""
     nuisance = [n for n in fitted.movable if n not in names]
-    _, jacobian = comparison.problem.evaluate(fitted.params, nuisance + names)
+    _, jacobian = runs.problem.evaluate(fitted.params, nuisance + names)
     return project_off(jacobian[:, len(nuisance) :], jacobian[:, : len(nuisance)])
 
 
@@ -222,6 +219,6 @@ def nuisance_of(fitted: Fitted) -> Nuisance:
     return Nuisance(
         movable,
         fitted.fit.jacobian[:, place],
-        pulls(movable, h.known),
+        h.sample * pulls(movable, h.known),
         np.array([fitted.params[n] - h.start[n] for n in movable]),
     )

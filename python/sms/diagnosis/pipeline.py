@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms import _core
-from sms.diagnosis.adequacy.repeatability import Ground, Repeatability
-from sms.diagnosis.effects.catalogue import catalogue
+from sms.diagnosis.adequacy.repeatability import Repeatability
+from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.evidence import candidates_of, cause_of, gains, remainder_of, series_of, value_of
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
+from sms.diagnosis.preparation import make_data
 from sms.diagnosis.related_rigs import related_rigs
 from sms.diagnosis.result import Diagnosis, Finding, NotTestable, Related, Verdict
 from sms.diagnosis.selection.forward_selection import (
@@ -25,14 +26,11 @@ from sms.diagnosis.selection.forward_selection import (
 )
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.simulated import diagnose_plant
-from sms.estimation.block_statistics import strokes_per_block
-from sms.estimation.windows import Runs
 from sms.io import check as data_check
 from sms.io.errors import InputError
 from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.report import wording
-from sms.rigs.cylinder import Comparison, Motion, prepare, with_role
 from sms.rigs.kinds import KINDS
 
 
@@ -69,9 +67,8 @@ def diagnose(
         return diagnose_plant(rig, records, blank, rng, progress, empirical)
 
     progress("fitting the baseline", 0.1)
-    motions = [prepare(rig, record) for record in records]
-    data = split(rig, motions)
-    effects = catalogue()
+    data = make_data(rig, records)
+    effects = effects_of(rig)
     baseline = fit(baseline_hypothesis(data, effects), data.identify)
     able, blind = identifiable(baseline, data, effects)
     before = repeats_of(baseline, data, rng)
@@ -84,7 +81,7 @@ def diagnose(
         outcome, after = replace(outcome, final=baseline, named=False), before
     progress("comparing related rigs", 0.9)
     related = related_rigs(rig, outcome.final, effects)
-    case = Case(data, motions, baseline, outcome, verdict, blind, before, after, related)
+    case = Case(data, baseline, outcome, verdict, blind, before, after, related)
     return complete(blank, case, rng)
 
 
@@ -110,32 +107,6 @@ def read_and_check(rig: Rig) -> tuple[list[Record], tuple[Finding, ...]]:
             Finding(f.severity, f.file.name, f.line, f.signal, f.message, f.remedy) for f in found
         ]
     return records, tuple(findings)
-
-
-def split(rig: Rig, motions: Sequence[Motion]) -> Data:
-    """The records by role, with as many strokes in a block as the baseline's noise asks for."""
-    data = Data(
-        rig,
-        Comparison(tuple(with_role(motions, "identify"))),
-        Comparison(tuple(with_role(motions, "validate"))),
-        Comparison(tuple(kept_out)) if (kept_out := with_role(motions, "test")) else None,
-    )
-    first = fit(baseline_hypothesis(data, catalogue()), data.identify)
-
-    def in_blocks(comparison: Comparison | Runs) -> Comparison:
-        assert isinstance(comparison, Comparison)
-        inputs = comparison.inputs
-        record, stroke = comparison.record, comparison.stroke
-        ground = Ground.of(record, stroke, inputs["extension [m]"], inputs["direction"])
-        noise = ground.without_repeats(residual_of(comparison, first.params))
-        return replace(comparison, strokes_per_block=strokes_per_block(noise, record, stroke))
-
-    return replace(
-        data,
-        identify=in_blocks(data.identify),
-        validate=in_blocks(data.validate),
-        test=None if data.test is None else in_blocks(data.test),
-    )
 
 
 # ---- the answer ----------------------------------------------------------------------------------
@@ -167,7 +138,6 @@ class Case:
     """Everything the steps brought."""
 
     data: Data
-    motions: Sequence[Motion]
     baseline: Fitted
     outcome: Outcome
     verdict: Verdict
@@ -182,7 +152,7 @@ def complete(blank: Diagnosis, case: Case, rng: np.random.Generator) -> Diagnosi
     data, baseline, outcome = case.data, case.baseline, case.outcome
     causes = tuple(cause_of(m, outcome, baseline, data) for m in outcome.groups)
     floor = float(np.sqrt(case.before.stroke))
-    gain = gains(baseline, outcome.final, data, floor, rng)
+    gain = gains(baseline, outcome.final, data, np.array([case.before.stroke]), rng)
     left = remainder_of(outcome.final, data, case.before, case.after)
     start = baseline.hypothesis.start
     return replace(
@@ -199,5 +169,5 @@ def complete(blank: Diagnosis, case: Case, rng: np.random.Generator) -> Diagnosi
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
         next_experiment=wording.next_experiment(case.verdict, causes, left),
         related=case.related,
-        series=tuple(series_of(m, baseline, outcome.final) for m in case.motions),
+        series=series_of(baseline, outcome.final, data),
     )

@@ -11,10 +11,12 @@ from dataclasses import replace
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
 from sms.diagnosis.result import ParameterValue, Related
+from sms.estimation.noise import noise_of
+from sms.estimation.windows import Runs
 from sms.io.records import load_record
 from sms.io.rig import Rig, load_rig
 from sms.parameters import PARAMETERS
-from sms.rigs.cylinder import Comparison, prepare
+from sms.rigs.kinds import kind_of
 
 
 def related_rigs(rig: Rig, extended: Fitted, effects: tuple[Effect, ...]) -> tuple[Related, ...]:
@@ -31,7 +33,9 @@ def related_rigs(rig: Rig, extended: Fitted, effects: tuple[Effect, ...]) -> tup
 def _row(
     rig: Rig, differs: str, causes: tuple[Effect, ...], effects: tuple[Effect, ...]
 ) -> Related:
-    everything = Comparison(tuple(prepare(rig, load_record(rig, source)) for source in rig.records))
+    kind = kind_of(rig)
+    motions = tuple(kind.make_run(rig, load_record(rig, source)) for source in rig.records)
+    everything = Runs(rig, motions, noise_of(rig, kind, motions), kind)
     hypothesis = baseline_hypothesis(Data(rig, everything, everything), effects)
     for cause in causes:
         hypothesis = replace(hypothesis.with_effect(cause), causes=causes)

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sms.arrays import Array
 from sms.diagnosis.adequacy.hysteresis import Hysteresis
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, explained, lack_of_fit, small
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
@@ -22,38 +21,31 @@ from sms.diagnosis.adequacy.verdict import consistent, decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
 from sms.diagnosis.effects.catalogue import Effect, effects_of
-from sms.diagnosis.evidence import candidates_of, cause_from, gains_on, value_of
+from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
 from sms.diagnosis.hypothesis import (
     Data,
     Fitted,
     baseline_hypothesis,
     fit,
     nuisance_of,
-    refitted,
-    refitted_on,
 )
 from sms.diagnosis.localisation.empirical_term import empirical_of
 from sms.diagnosis.localisation.equation_error import fed_equations
 from sms.diagnosis.localisation.residual_spectrum import symptoms_of
 from sms.diagnosis.localisation.unknown_inputs import estimate_unknown_inputs
+from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import (
     Cause,
     Diagnosis,
     FedEquations,
-    Gain,
     Hidden,
     NotTestable,
     ParameterValue,
-    Series,
     Verdict,
 )
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.forward_selection import Outcome, Progress, forward_selection
 from sms.diagnosis.selection.identifiability import identifiable
-from sms.estimation.kind import Kind
-from sms.estimation.noise import noise_of
-from sms.estimation.run import Run, make_run
-from sms.estimation.windows import Runs
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
@@ -64,7 +56,7 @@ from sms.report.wording_simulated import (
     sentence_of_inconsistency,
     words_of_inconsistency,
 )
-from sms.rigs.kinds import KINDS, kind_of
+from sms.rigs.kinds import KINDS
 
 
 @dataclass(frozen=True)
@@ -95,25 +87,7 @@ class Case:
     def fed(self, rng: np.random.Generator) -> FedEquations | None:
         """The same with each equation fed with measured signals; None for a kind without such equations."""
         runs = self.data.identify
-        assert isinstance(runs, Runs)
         return fed_equations(runs, self.baseline, rng)
-
-
-def make_data(rig: Rig, records: Sequence[Record]) -> Data:
-    """The records by role, as the core's problems."""
-    kind = kind_of(rig)
-    runs = [make_run(rig, record) for record in records]
-    return split(rig, kind, runs, noise_of(rig, kind, runs))
-
-
-def split(rig: Rig, kind: Kind, runs: Sequence[Run], noise: dict[str, float]) -> Data:
-    """Runs by role."""
-
-    def of(role: str) -> Runs:
-        return Runs(rig, tuple(r for r in runs if r.role == role), noise, kind)
-
-    kept_out = of("test") if any(r.role == "test" for r in runs) else None
-    return Data(rig, of("identify"), of("validate"), kept_out)
 
 
 def diagnose_plant(
@@ -187,7 +161,7 @@ def complete(
     progress("asking which equation is wrong", 0.85)
     hidden, fed = case.where(rng), case.fed(np.random.default_rng(blank.seed))
     left = _hidden(final, data, case.after, rng) if causes else None
-    gain = _gains(baseline, final, data, case.after.floor, rng)
+    gain = gains(baseline, final, data, case.after.floor, rng)
     curve = None
     if empirical and case.verdict == "unknown":
         progress("measuring what the curve of the unknown is worth", 0.88)
@@ -212,7 +186,7 @@ def complete(
         noise_floor={},
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
         next_experiment=next_experiment(case.verdict, classes, final, data, hidden, unfelt),
-        series=_all_series(case),
+        series=series_of(baseline, case.final, data),
     )
     return _with_words(answer, case, hidden)
 
@@ -254,76 +228,14 @@ def _cause(members: list[Trial], case: Case) -> Cause:
     return cause_from(members, found, {record: value for record, (value, _) in each.items()})
 
 
-# ---- gain, blocks, curves ------------------------------------------------------------
-
-
-def _gains(
-    baseline: Fitted, final: Fitted, data: Data, floor: Array, rng: np.random.Generator
-) -> tuple[Gain, ...]:
-    """What the extension is worth on each record it has not seen, and each signal, in the signal's unit."""
-    out: list[Gain] = []
-    assert isinstance(data.validate, Runs)
-    before, after = refitted(baseline, data), refitted(final, data)
-    out += gains_on(data.validate, before.fit.residual, after.fit.residual, floor, rng)
-    if isinstance(data.test, Runs):
-        before, after = (refitted_on(f, data.test) for f in (baseline, final))
-        out += gains_on(data.test, before.fit.residual, after.fit.residual, floor, rng)
-    return tuple(out)
+# ---- where it comes from ------------------------------------------------------------
 
 
 def _hidden(fitted: Fitted, data: Data, excess: LackOfFit, rng: np.random.Generator) -> Hidden:
     """Which equation is wrong, from the identify records."""
     runs = data.identify
-    assert isinstance(runs, Runs)
     rows = len(runs.channel) / len(runs.channels)
     chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
     return estimate_unknown_inputs(
         runs, nuisance_of(fitted), fitted.fit.residual, fitted.params, chi_square, rng
     )
-
-
-def _all_series(case: Case) -> tuple[Series, ...]:
-    data = case.data
-    parts = [p for p in (data.identify, data.validate, data.test) if isinstance(p, Runs)]
-    return tuple(s for part in parts for s in _series(part, case.baseline, case.final, data))
-
-
-def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Series]:
-    """Measured and predicted curves, window by window from the best initial states."""
-    if part is data.identify:
-        base, extended = baseline.params, final.params
-    elif part is data.validate:
-        base, extended = refitted(baseline, data).params, refitted(final, data).params
-    else:
-        base, extended = refitted_on(baseline, part).params, refitted_on(final, part).params
-    errors = part.problem.errors(base), part.problem.errors(extended)
-    out = []
-    for number, run in enumerate(part.motions):
-        for c, channel in enumerate(part.channels):
-            rows = (part.record == number) & (part.channel == c)
-            measured = run.signals[channel]
-            used = np.zeros(len(run.time), dtype=np.bool_)
-            used[part.sample[rows]] = True
-            base_curve, extended_curve = measured.copy(), measured.copy()
-            base_curve[used] += errors[0][rows] * part.noise[channel]
-            extended_curve[used] += errors[1][rows] * part.noise[channel]
-            out.append(
-                Series(
-                    run.name,
-                    run.role,
-                    channel,
-                    part.kind.units[channel],
-                    run.time,
-                    measured,
-                    base_curve,
-                    extended_curve,
-                    used,
-                    _inputs(part.kind, run),
-                )
-            )
-    return out
-
-
-def _inputs(kind: Kind, run: Run) -> dict[str, Array]:
-    found = {f"{n} [{kind.units[n]}]": run.signals[n] for n in kind.shown if n in run.signals}
-    return found | kind.derived(run) | {"time [s]": run.time - run.time[0]}

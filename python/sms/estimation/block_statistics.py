@@ -124,7 +124,7 @@ def correlation_length(residual: Array, stroke: Index, longest: int = 1000) -> f
     return length
 
 
-def strokes_per_block(residual: Array, record: Index, stroke: Index) -> int:
+def windows_per_block(residual: Array, record: Index, stroke: Index) -> int:
     """How many strokes make a block of BLOCK correlation lengths, at the most a quarter of a record's."""
     strokes = int(stroke.max()) + 1
     wanted = BLOCK * correlation_length(residual, stroke) * strokes / len(residual)
@@ -132,9 +132,9 @@ def strokes_per_block(residual: Array, record: Index, stroke: Index) -> int:
     return int(np.clip(np.ceil(wanted), 1, max(fewest // 4, 1)))
 
 
-def merge_strokes(record: Index, stroke: Index, together: int) -> Index:
-    """(n,): number of the block of `together` strokes in a row of one record, counted from 0."""
-    first = {r: int(stroke[record == r].min()) for r in np.unique(record)}
-    within = (stroke - np.vectorize(first.get)(record)) // together
-    key = record * (int(stroke.max()) + 1) + within
+def merge_windows(record: Index, window: Index, together: int) -> Index:
+    """(n,): number of the block of `together` windows in a row of one record, counted from 0."""
+    first = {r: int(window[record == r].min()) for r in np.unique(record)}
+    within = (window - np.vectorize(first.get)(record)) // together
+    key = record * (int(window.max()) + 1) + within
     return np.unique(key, return_inverse=True)[1].astype(np.int64)

@@ -11,8 +11,10 @@ from dataclasses import dataclass, field
 
 from sms import _core
 from sms.arrays import Array
+from sms.estimation.least_squares import Free, Solution, fit_windows
 from sms.estimation.problem import Problem, WindowProblem
-from sms.estimation.run import Run
+from sms.estimation.run import Run, make_run
+from sms.io.records import Record
 from sms.io.rig import Rig
 from sms.io.signals import SIGNAL_UNITS
 
@@ -62,6 +64,15 @@ class Kind:
     computed: Mapping[str, float] = field(default_factory=dict)
     """Outputs that a computer makes of the others' readings -> noise of a sample that is not declared, SI. They are no
     readings, and hardly have a noise: less than what is declared, or this, is not worth a word."""
+    whitened: bool = True
+    """Residuals are in units of the noise of a sample; else in the unit of the signal, and their noise is what differs
+    between repeats."""
+    make_run: Callable[[Rig, Record], Run] = make_run
+    """From a record to what the problem takes."""
+    solve: Callable[[Problem, _core.Params, list[Free]], Solution] = fit_windows
+    """Least squares over the free parameters, from initial ones."""
+    whole: Callable[[Run], Run] | None = None
+    """A run with all its samples compared, where windows leave some out; None where they do not."""
     short: float = 0.025
     """s: what differs over this time is noise; what lasts longer a model could explain."""
     honest: tuple[float, float] = (0.15, 0.3)

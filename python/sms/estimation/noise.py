@@ -13,7 +13,12 @@ from sms.io.rig import Rig
 
 
 def noise_of(rig: Rig, kind: Kind, runs: Sequence[Run]) -> dict[str, float]:
-    """Standard deviation of one sample of each output, SI: as declared, else from how neighbours differ."""
+    """Standard deviation of one sample of each output, SI: as declared, else from how neighbours differ.
+
+    1 where residuals stay in the unit of the signal.
+    """
+    if not kind.whitened:
+        return dict.fromkeys(kind.outputs, 1.0)
     noise = {}
     for signal in kind.outputs:
         source = rig.signals.get(signal)

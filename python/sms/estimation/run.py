@@ -33,13 +33,9 @@ class Run:
         width = max(5, 2 * round(0.025 / self.step) + 1)
         return np.asarray(savgol_filter(self.signals[signal], width, 2, 1, self.step))
 
-    @property
-    def velocity(self) -> Array:
-        """Of the extension, m/s."""
-        return self.rate("extension")
-
 
 def make_run(rig: Rig, record: Record) -> Run:
+    """A record with its pressures absolute."""
     ambient = rig.declared("ambient_pressure").value
     signals = {
         name: values + (ambient if name in record.gauge else 0.0)

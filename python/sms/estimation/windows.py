@@ -1,21 +1,24 @@
-"""Records of tank, bench and platform as the core's problem: a simulation held against them, window by window.
+"""Records as the core's problem: a model held against them, window by window.
 
-The record is cut into windows of about a second, each simulated from an initial state that fits it best
-(libsms/estimation/shooting.hpp). What comes out is in units of the declared noise. A window is the block that
-judgements resample.
+Of tank, bench and platform the record is cut into windows of about a second, each simulated from an initial state that
+fits it best (libsms/estimation/shooting.hpp), and what comes out is in units of the declared noise. A cylinder's
+windows are its strokes (rigs/cylinder.py). A window, or a few in a row, is the block that judgements resample.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from sms import _core
 from sms.arrays import Array, Index
+from sms.estimation.block_statistics import merge_windows
 from sms.estimation.divergence import WithinNumbers
 from sms.estimation.kind import Kind
+from sms.estimation.least_squares import Free, Solution
 from sms.estimation.problem import WindowProblem
 from sms.estimation.run import Run
 from sms.io.rig import Rig
@@ -31,8 +34,13 @@ class Runs:
     noise: dict[str, float]
     kind: Kind
 
-    whitened = True
-    """Residuals are in units of the declared noise."""
+    windows_per_block: int = 1
+    """Windows in a row that are resampled together, where noise lasts longer than one."""
+
+    @property
+    def whitened(self) -> bool:
+        """Whether residuals are in units of the noise of a sample (kind.Kind)."""
+        return self.kind.whitened
 
     @cached_property
     def channels(self) -> tuple[str, ...]:
@@ -46,8 +54,23 @@ class Runs:
 
     @cached_property
     def problem(self) -> WindowProblem:
-        """The same where it does not run away."""
-        return WithinNumbers(self.simulation)
+        """The same where it does not diverge."""
+        return WithinNumbers(self.simulation) if self.whitened else self.simulation
+
+    def fit(self, initial: _core.Params, free: list[Free]) -> Solution:
+        """Least squares over the free parameters."""
+        return self.kind.solve(self.problem, initial, free)
+
+    @cached_property
+    def whole(self) -> Runs:
+        """The same runs with all their samples compared."""
+        if self.kind.whole is None:
+            return self
+        return replace(self, motions=tuple(self.kind.whole(run) for run in self.motions))
+
+    def part(self, number: int) -> Runs:
+        """One of the records alone."""
+        return replace(self, motions=(self.motions[number],))
 
     @cached_property
     def record(self) -> Index:
@@ -55,9 +78,16 @@ class Runs:
         return self._of_windows([w.record for w in self.problem.windows])
 
     @cached_property
-    def block(self) -> Index:
+    def window(self) -> Index:
         """(rows,): which window a row belongs to."""
         return self._of_windows(list(range(len(self.problem.windows))))
+
+    @cached_property
+    def block(self) -> Index:
+        """(rows,): which block of windows in a row; what judgements resample (block_statistics.py)."""
+        if self.windows_per_block == 1:
+            return self.window
+        return merge_windows(self.record, self.window, self.windows_per_block)
 
     @cached_property
     def sample(self) -> Index:

@@ -23,10 +23,10 @@ from scipy.stats import t as student
 
 from sms import _core
 from sms.arrays import Array
-from sms.estimation.block_statistics import covariance_of, strokes_per_block
+from sms.estimation.block_statistics import covariance_of, merge_windows, windows_per_block
 from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.parameters import PARAMETERS
-from sms.rigs.cylinder import Comparison, Motion
+from sms.rigs.cylinder import Motion, core_record, rows_of
 
 COLLINEAR = 10.0
 """Collinearity index beyond which a parameter only repeats others (Brun et al.: 5 to 20)."""
@@ -114,21 +114,7 @@ def problem_of(
     motions: Sequence[Motion], law: str
 ) -> tuple[_core.CylinderProblem, NDArray[np.bool_]]:
     """All samples of the records, and which of them are compared."""
-    records = []
-    for m in motions:
-        records.append(
-            _core.CylinderRecord(
-                extension=m.signals["extension"],
-                velocity=m.velocity,
-                acceleration=m.acceleration,
-                pressure_lower=m.signals["chamber_pressure_lower"],
-                pressure_upper=m.signals.get("chamber_pressure_upper", np.empty(0)),
-                rod_force=m.signals["rod_force"],
-                gauge_lower="chamber_pressure_lower" in m.gauge,
-                gauge_upper="chamber_pressure_upper" in m.gauge,
-                time=m.time,
-            )
-        )
+    records = [core_record(m, slice(None)) for m in motions]
     return _core.CylinderProblem(records, law), np.concatenate([m.used for m in motions])
 
 
@@ -145,12 +131,12 @@ def fit_law(
     wanted = [n for n in dict.fromkeys((*LAWS[law], *asked)) if loaded or "rod_force" not in n]
     names, left_out, start = _choose(problem, used, law, start, wanted)
     found = _estimate(problem, used, start, names)
-    comparison = Comparison(tuple(identify))
-    together = strokes_per_block(found.residual[used], comparison.record, comparison.stroke)
-    block = Comparison(tuple(identify), together).block
+    record, stroke = rows_of(identify)
+    together = windows_per_block(found.residual[used], record, stroke)
+    block = merge_windows(record, stroke, together)
     covariance = covariance_of(found.jacobian[used], found.residual[used], block)
     between = leaving_out_runs(
-        found.jacobian[used], found.residual[used], comparison.record, ~np.array(found.at_bound)
+        found.jacobian[used], found.residual[used], record, ~np.array(found.at_bound)
     )
     alone = [_estimate(*problem_of([m], law), found.params, names) for m in identify]
     own_freedom = max(int(block.max()) + 1 - len(names), 1)

@@ -91,7 +91,7 @@ EQUATIONS = Equations(
 
 def derived(run: Run) -> dict[str, Array]:
     """The rod's motion."""
-    velocity = run.velocity
+    velocity = run.rate("extension")
     return {"velocity [m/s]": velocity, "direction": np.sign(velocity)}
 
 

@@ -1,18 +1,26 @@
-"""Measured records as the core's problem: motion derived from the position, strokes found, samples chosen."""
+"""The rig "cylinder": a force balance fed with measured motion and pressures; the load cell is what it predicts.
+
+The motion is derived from the position. A window is a stroke, a run of samples in one direction; samples between
+strokes are not compared. Nothing is simulated, so a fit is the core's own (Ceres), and residuals stay in newtons: their
+noise is what differs between strokes over the same ground (diagnosis/adequacy/repeatability.py).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from sms import _core
-from sms.arrays import Array
-from sms.estimation.block_statistics import merge_strokes
+from sms.arrays import Array, Index
+from sms.estimation.kind import Kind
+from sms.estimation.least_squares import Free, Solution
+from sms.estimation.problem import Problem, WindowProblem
+from sms.estimation.run import Run
+from sms.estimation.windows import Runs
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
@@ -23,20 +31,15 @@ SHORTEST_STROKE = 10
 """samples: what moves one way for less is a jerk at the reversal, not a stroke."""
 
 
-@dataclass(frozen=True)
-class Motion:
-    """One record with its derived motion. Arrays (n,) over all samples of the file, SI."""
+@dataclass(frozen=True, eq=False)
+class Motion(Run):
+    """A run with its derived motion. Arrays (n,) over all samples of the file, SI."""
 
-    name: str
-    role: str
-    time: Array
     velocity: Array
     acceleration: Array
-    signals: dict[str, Array]
-    gauge: frozenset[str]
     used: NDArray[np.bool_]
     """Samples that are compared: moving, part of a stroke, not among the first that are skipped."""
-    stroke: NDArray[np.int64]
+    stroke: Index
     """Number of the stroke each sample belongs to, counted from 0; -1 where `used` is false."""
 
 
@@ -74,9 +77,9 @@ def number_strokes(moving: NDArray[np.bool_], direction: Array) -> NDArray[np.in
 
 def prepare(rig: Rig, record: Record) -> Motion:
     """Derive the motion of one record and choose the samples that are compared."""
-    time = record.signals["time"]
-    extension = record.signals["extension"]
-    velocity, acceleration = derive_motion(time, extension)
+    signals = dict(record.signals)
+    time = signals.pop("time")
+    velocity, acceleration = derive_motion(time, signals["extension"])
     moving = np.abs(velocity) > (rig.speed_above or 0.0)
     moving[: rig.skip_first] = False
     stroke = number_strokes(moving, velocity)
@@ -84,95 +87,134 @@ def prepare(rig: Rig, record: Record) -> Motion:
         name=record.name,
         role=record.role,
         time=time,
+        signals=signals,
+        gauge=record.gauge,
+        conditions={},
         velocity=velocity,
         acceleration=acceleration,
-        signals=dict(record.signals),
-        gauge=record.gauge,
         used=stroke >= 0,
         stroke=stroke,
     )
 
 
+def whole(run: Run) -> Motion:
+    """All samples as one stroke."""
+    motion = _motion(run)
+    n = len(motion.time)
+    return replace(motion, used=np.ones(n, dtype=np.bool_), stroke=np.zeros(n, dtype=np.int64))
+
+
+def motions_of(runs: Runs) -> tuple[Motion, ...]:
+    """The runs of a cylinder with their motion."""
+    return tuple(_motion(run) for run in runs.motions)
+
+
+def _motion(run: Run) -> Motion:
+    assert isinstance(run, Motion)
+    return run
+
+
+# ---- the problem ---------------------------------------------------------------------------------
+
+
 @dataclass(frozen=True)
-class Comparison:
-    """Several records as one problem of the core, with what a judgement needs to know of each row."""
+class Stroke:
+    """A window: a run of samples in one direction."""
 
-    motions: tuple[Motion, ...]
-    strokes_per_block: int = 1
+    record: int
+    first: int
+    samples: int
+    row: int
 
-    whitened = False
-    """Residuals are in the unit of the signal."""
-
-    @cached_property
-    def problem(self) -> _core.Problem:
-        return _core.CylinderProblem([_cylinder_record(m, m.used) for m in self.motions])
-
-    @cached_property
-    def record(self) -> NDArray[np.int64]:
-        """(rows,): which record a row belongs to."""
-        return np.repeat(np.arange(len(self.motions)), [int(m.used.sum()) for m in self.motions])
-
-    @cached_property
-    def stroke(self) -> NDArray[np.int64]:
-        """(rows,): which stroke, numbered through all records."""
-        numbers, offset = [], 0
-        for m in self.motions:
-            numbers.append(m.stroke[m.used] + offset)
-            offset += int(m.stroke.max(initial=-1)) + 1
-        return np.concatenate(numbers)
-
-    @cached_property
-    def block(self) -> NDArray[np.int64]:
-        """(rows,): which block of strokes in a row; what judgements resample (estimation/block_statistics.py)."""
-        return merge_strokes(self.record, self.stroke, self.strokes_per_block)
-
-    @cached_property
-    def inputs(self) -> dict[str, Array]:
-        """(rows,) each: the signals along which a residual may be arranged, SI."""
-        return {
-            name: np.concatenate([inputs_of(m)[name][m.used] for m in self.motions])
-            for name in inputs_of(self.motions[0])
-        }
-
-    def part(self, number: int) -> Comparison:
-        """One of the records alone."""
-        return Comparison((self.motions[number],), self.strokes_per_block)
+    @property
+    def rows(self) -> int:
+        return self.samples
 
 
-def inputs_of(motion: Motion) -> dict[str, Array]:
-    """The signals of one record against which a residual is looked at, name with unit -> (n,)."""
-    inputs = {
-        "extension [m]": motion.signals["extension"],
-        "velocity [m/s]": motion.velocity,
-        "direction": np.sign(motion.velocity),
-    }
-    for name, values in motion.signals.items():
-        if name.startswith("chamber_pressure"):
-            inputs[f"{name} [Pa]"] = values
-    return inputs | {"time [s]": motion.time}
+class Balance:
+    """The force balance over the strokes of some runs, as a WindowProblem. Residuals in N: predicted less measured."""
+
+    def __init__(self, motions: Sequence[Motion]) -> None:
+        self.core = _core.CylinderProblem([core_record(m, m.used) for m in motions])
+        self.windows = strokes_of(motions)
+
+    @property
+    def rows(self) -> int:
+        return int(self.core.rows)
+
+    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
+        """Residual (rows,) and Jacobian (rows, free)."""
+        return self.core.evaluate(params, free)
+
+    def errors(self, params: _core.Params) -> Array:
+        """(rows,): the residual; a balance has no initial state."""
+        return np.asarray(self.evaluate(params)[0])
+
+    def hidden(self, params: _core.Params, knots: int) -> Array:
+        """(rows, 0): what is not simulated has no unknown input."""
+        return np.empty((self.rows, 0))
 
 
-def _cylinder_record(motion: Motion, rows: NDArray[np.bool_]) -> _core.CylinderRecord:
+def strokes_of(motions: Sequence[Motion]) -> list[Stroke]:
+    """The strokes of all runs, in the order of their rows."""
+    strokes, row = [], 0
+    for record, motion in enumerate(motions):
+        for number in np.unique(motion.stroke[motion.used]):
+            places = np.flatnonzero(motion.stroke == number)
+            strokes.append(Stroke(record, int(places[0]), len(places), row))
+            row += len(places)
+    return strokes
+
+
+def rows_of(motions: Sequence[Motion]) -> tuple[Index, Index]:
+    """(rows,) each: which record a compared sample belongs to, and which stroke, numbered through all records."""
+    strokes = strokes_of(motions)
+    samples = [s.samples for s in strokes]
+    record = np.repeat(np.array([s.record for s in strokes], dtype=np.int64), samples)
+    return record, np.repeat(np.arange(len(strokes), dtype=np.int64), samples)
+
+
+def core_record(motion: Motion, rows: NDArray[np.bool_] | slice) -> _core.CylinderRecord:
+    """Some samples of a run as the core takes them."""
     signals = {name: values[rows] for name, values in motion.signals.items()}
-    upper = signals.get("chamber_pressure_upper", np.empty(0))
     return _core.CylinderRecord(
         extension=signals["extension"],
         velocity=motion.velocity[rows],
         acceleration=motion.acceleration[rows],
         pressure_lower=signals["chamber_pressure_lower"],
-        pressure_upper=upper,
+        pressure_upper=signals.get("chamber_pressure_upper", np.empty(0)),
         rod_force=signals["rod_force"],
         gauge_lower="chamber_pressure_lower" in motion.gauge,
         gauge_upper="chamber_pressure_upper" in motion.gauge,
+        time=motion.time[rows],
     )
 
 
-def predict(motion: Motion, params: _core.Params) -> Array:
-    """The reading of the load cell that the model predicts, N, over all samples (n,)."""
-    rows = np.ones(len(motion.time), dtype=np.bool_)
-    residual, _ = _core.CylinderProblem([_cylinder_record(motion, rows)]).evaluate(params)
-    return np.asarray(residual + motion.signals["rod_force"])
+def _make_problem(
+    rig: Rig, runs: Sequence[Run], channels: Sequence[str], noise: Mapping[str, float]
+) -> WindowProblem:
+    return Balance([_motion(run) for run in runs])
 
 
-def with_role(motions: Iterable[Motion], role: str) -> Sequence[Motion]:
-    return [m for m in motions if m.role == role]
+def _solve(problem: Problem, initial: _core.Params, free: list[Free]) -> Solution:
+    assert isinstance(problem, Balance)
+    return _core.fit(problem.core, initial, [(f.name, f.lower, f.upper, f.pull) for f in free])
+
+
+def _derived(run: Run) -> dict[str, Array]:
+    velocity = _motion(run).velocity
+    return {"velocity [m/s]": velocity, "direction": np.sign(velocity)}
+
+
+CYLINDER = Kind(
+    outputs=("rod_force",),
+    hidden={},
+    make_problem=_make_problem,
+    derived=_derived,
+    shown=("extension", "chamber_pressure_lower", "chamber_pressure_upper"),
+    menu=(),
+    whitened=False,
+    make_run=prepare,
+    solve=_solve,
+    whole=whole,
+)

@@ -1,4 +1,4 @@
-"""The kinds of rig that are simulated against their records, one entry a kind."""
+"""The kinds of rig, one entry a kind: those that are simulated against their records, and the cylinder."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from sms.io.rig import Rig
 from sms.io.signals import without_leg
 from sms.rigs.bench import BENCH
 from sms.rigs.bench_loop import BENCH_LOOP, BENCH_LOOP_BLIND
+from sms.rigs.cylinder import CYLINDER
 from sms.rigs.platform import PLATFORM
 from sms.rigs.platform_loop import PLATFORM_LOOP, PLATFORM_LOOP_BLIND
 from sms.rigs.tank import TANK
@@ -36,6 +37,8 @@ def kind_of(rig: Rig) -> Kind:
 
     InputError for one that is not simulated, and where of signals that belong together only some are listed.
     """
+    if rig.kind == "cylinder":
+        return CYLINDER
     if rig.kind not in KINDS:
         raise InputError(
             f"{rig.path}: a {rig.kind} is not simulated against its records; "

@@ -9,11 +9,12 @@ import numpy as np
 from sms.diagnosis import diagnose
 from sms.diagnosis.effects.catalogue import catalogue
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
-from sms.diagnosis.pipeline import read_and_check, split
+from sms.diagnosis.pipeline import read_and_check
+from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import Diagnosis
 from sms.diagnosis.selection.identifiability import identifiable
+from sms.estimation.windows import Runs
 from sms.io.rig import load_rig
-from sms.rigs.cylinder import Comparison, prepare
 
 from validation.trials.cylinder import some_effect
 from validation.trials.peers.candidates import best_by_aic
@@ -54,7 +55,7 @@ def ask(seed: int, sort: str, multiple: float) -> tuple[list[Said], Question]:
         answer = diagnose(records / "rig.toml", seed=seed)
         rig = load_rig(records / "rig.toml")
         read, _ = read_and_check(rig)
-        data = split(rig, [prepare(rig, record) for record in read])
+        data = make_data(rig, read)
         truth = open_truth(sealed, records)
     hidden = truth["effect"] if truth["signal"] is None else f"{truth['effect']}:{truth['signal']}"
     baseline = fit(baseline_hypothesis(data, catalogue()), data.identify)
@@ -88,12 +89,11 @@ def _noise(value: float) -> float:
 
 def question_of(baseline: Fitted, data: Data) -> Question:
     """Residuals of the baseline, in units of their standard deviation on the identify records."""
-    assert isinstance(data.identify, Comparison) and isinstance(data.validate, Comparison)
     scale = float(np.std(baseline.fit.residual))
 
-    def part(comparison: Comparison, residual: Array) -> Part:
-        inputs = np.column_stack([comparison.inputs[name] for name in INPUTS])
-        series = comparison.record.astype(np.int64)
+    def part(runs: Runs, residual: Array) -> Part:
+        inputs = np.column_stack([runs.inputs[name] for name in INPUTS])
+        series = runs.record.astype(np.int64)
         return Part(-residual / scale, inputs, series, np.zeros(len(residual), dtype=np.int64))
 
     return Question(

@@ -109,7 +109,6 @@ def _ours(case: Case, outcome: Outcome) -> Opinion:
 def _of_curve(case: Case) -> float:
     """What the curve of an unknown is worth as an empirical term (sms diagnose --empirical)."""
     runs = case.data.validate
-    assert isinstance(runs, Runs)
     there = refitted(case.baseline, case.data)
     shape = case.where(np.random.default_rng(1)).shape
     added = with_curve(runs, nuisance_of(there), there.params, shape)
@@ -156,7 +155,6 @@ def _sits_in(case: Case, outcome: Outcome) -> list[str]:
 def _by_aic(case: Case) -> Iterator[Opinion]:
     """Samples counted as they come, and as many as they are worth."""
     data = case.data
-    assert isinstance(data.identify, Runs)
     fits = _single_causes(case)
     for method, independent in (("best AIC", True), ("best AIC, effective samples", False)):
         effect, fitted, margin = chosen_by_aic(
@@ -190,7 +188,6 @@ def question_of(case: Case) -> tuple[Question, float]:
     """What the peers get, and the processor time that it takes to make it beyond the baseline's fit."""
     data, begin, baseline = case.data, time.process_time(), case.baseline
     identify, validate = data.identify, data.validate
-    assert isinstance(identify, Runs) and isinstance(validate, Runs)
     there = refitted(baseline, data)
     names = [n for n in identify.inputs if not n.startswith(NOT_FOLLOWED)]
     found = {
@@ -256,7 +253,6 @@ def _of_peer(method: str, said: PlantAnswer, case: Case, seconds: float) -> Opin
 def _share(case: Case, after: Array) -> float:
     """Part of the excess that is taken on the unseen records."""
     runs = case.data.validate
-    assert isinstance(runs, Runs)
     left = [float(np.mean(after[runs.channel == c] ** 2)) for c in range(len(runs.channels))]
     return _of_readings(case, left)
 
@@ -270,7 +266,6 @@ def _of_readings(case: Case, left: Sequence[float]) -> float:
 def _of_terms(case: Case, terms: dict[str, list[list[float]]]) -> float:
     """The terms carried along in the simulation; one that makes the unseen records worse is left out."""
     runs = case.data.validate
-    assert isinstance(runs, Runs)
     there = refitted(case.baseline, case.data)
     nuisance = nuisance_of(there)
     best, after = 0.0, there.fit.residual

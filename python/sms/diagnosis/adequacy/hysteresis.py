@@ -20,7 +20,6 @@ from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.thresholds import APART, APART_BY, PLAY
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
-from sms.rigs.cylinder import Comparison
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,6 @@ def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
         played = _sensitivity(runs, at, effect)
         if played is None:
             return None
-        assert isinstance(runs, Runs)
         both = np.column_stack([column_of(runs, at, effect), played])
         gram += beside(at, effect).gram(both)
         rows += len(both)
@@ -59,9 +57,8 @@ def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
     )
 
 
-def _sensitivity(runs: Comparison | Runs, at: Fitted, effect: Effect) -> Array | None:
+def _sensitivity(runs: Runs, at: Fitted, effect: Effect) -> Array | None:
     """(rows,): change of the residual per volt of play; None where no recorded command opens the valve."""
-    assert isinstance(runs, Runs)
     leg = effect.parameters[0].partition(":")[2]
     names = [n for n in runs.motions[0].signals if n.startswith("valve_command") and leg in n]
     if any(

@@ -58,7 +58,6 @@ def _bar(before: float, honest: float) -> float:
 
 def lack_of_fit(fitted: Fitted, data: Data) -> LackOfFit:
     """What this model leaves."""
-    assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
     seen, unseen = fitted.fit.residual, refitted(fitted, data).fit.residual
     floor = 0.5 * (data.identify.floor(seen) + data.validate.floor(unseen))
     parts = _beyond(seen, data.identify, floor), _beyond(unseen, data.validate, floor)

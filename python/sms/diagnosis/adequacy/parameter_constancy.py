@@ -29,7 +29,6 @@ from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.localisation.activity import Activity, activity, own_signals
 from sms.diagnosis.thresholds import APART, APART_BY, APART_IN_TIME
 from sms.estimation.windows import Runs
-from sms.rigs.cylinder import Comparison
 
 
 @dataclass(frozen=True)
@@ -118,9 +117,8 @@ class _InTime:
         return self.beside.gram(np.column_stack([low, self.activity.column - low]))
 
 
-def _in_time(runs: Comparison | Runs, at: Fitted, effect: Effect) -> _InTime | None:
+def _in_time(runs: Runs, at: Fitted, effect: Effect) -> _InTime | None:
     """None for a cause that does not act on the equations."""
-    assert isinstance(runs, Runs)
     found = activity(runs, at.params, column_of(runs, at, effect))
     if found is None:
         return None

@@ -55,7 +55,6 @@ def inconsistency(
     baseline: Fitted, data: Data, effects: Sequence[Effect], floor: Array
 ) -> Inconsistency | None:
     """The effect that each record has with a value of its own; None if there is no such. floor: (channels,)."""
-    assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
     parts = [(data.identify, baseline), (data.validate, refitted(baseline, data))]
     effects = [e for e in effects if e.id in BETWEEN_RUNS]
     if not effects or sum(len(runs.motions) for runs, _ in parts) < 3:

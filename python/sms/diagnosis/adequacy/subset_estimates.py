@@ -91,7 +91,6 @@ def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, Es
 
 def parts_of(fitted: Fitted, effect: Effect, data: Data) -> list[ByWindow]:
     """A cause window by window, of the records that were fitted and of those that were not."""
-    assert isinstance(data.identify, Runs) and isinstance(data.validate, Runs)
     return [
         _by_window(data.identify, fitted, effect),
         _by_window(data.validate, refitted(fitted, data), effect),

@@ -93,7 +93,6 @@ def best_of_menu(
 ) -> tuple[Experiment, float] | None:
     """The run of the menu with the largest smallest separation of two rivals, in standard errors."""
     runs = data.identify
-    assert isinstance(runs, Runs)
     best: tuple[Experiment, float] | None = None
     for experiment in runs.kind.menu:
         run = experiment.simulated(data.rig, final.params, runs.channels)

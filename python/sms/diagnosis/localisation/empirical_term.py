@@ -14,7 +14,6 @@ from sms.diagnosis.evidence import gains_on
 from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, refitted_on
 from sms.diagnosis.localisation.unknown_inputs import with_curve
 from sms.diagnosis.result import Empirical, Gain, Shape
-from sms.estimation.windows import Runs
 
 
 def empirical_of(
@@ -23,7 +22,7 @@ def empirical_of(
     """What the curve is worth on each record that was not fitted; floor (channels,) as in Excess."""
     gains: list[Gain] = []
     for runs in (data.validate, data.test):
-        if isinstance(runs, Runs):
+        if runs is not None:
             there = refitted_on(baseline, runs)
             before = there.fit.residual
             after = before + with_curve(runs, nuisance_of(there), there.params, shape)

@@ -19,7 +19,6 @@ from sms.estimation.windows import Runs
 def symptoms_of(baseline: Fitted, data: Data, floor: Array) -> tuple[Symptom, ...]:
     """One a signal, in the order of the problem; floor (channels,) of the noise, in units of the declared one."""
     runs = data.validate
-    assert isinstance(runs, Runs)
     residual = refitted(baseline, data).fit.residual
     return tuple(
         _symptom(runs, residual, c, float(np.sqrt(floor[c]))) for c in range(len(runs.channels))

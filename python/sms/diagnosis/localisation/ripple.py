@@ -8,10 +8,10 @@ from scipy.signal import find_peaks
 from sms.arrays import Array
 from sms.diagnosis.result import Ripple
 from sms.diagnosis.thresholds import AGREEMENT, PERIODS_IN_TRAVEL, PROMINENCE, SHORTEST_PERIOD
-from sms.rigs.cylinder import Comparison
+from sms.estimation.windows import Runs
 
 
-def find_ripple(residual: Array, comparison: Comparison) -> Ripple | None:
+def find_ripple(residual: Array, comparison: Runs) -> Ripple | None:
     """The period that the residual (rows,) has along the extension in every record and direction, if there is one."""
     extension, direction = comparison.inputs["extension [m]"], comparison.inputs["direction"]
     low, high = np.quantile(extension, [0.1, 0.9])

@@ -16,7 +16,7 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array
-from sms.diagnosis import simulated
+from sms.diagnosis import preparation, simulated
 from sms.diagnosis.effects import catalogue
 from sms.diagnosis.own.model import Effect, Model
 from sms.diagnosis.own.records import Record, check
@@ -89,8 +89,8 @@ def diagnose_model(
         return replace(blank, verdict="data-fault", sentence=wording.data_fault(faults))
     rng = np.random.default_rng(seed)
     runs = [_run_of(model, record) for record in records]
-    data = simulated.split(rig, _kind_of(model, window), runs, _noise_of(model, runs))
-    fewest = min(len(part.problem.windows) for part in (data.identify, data.validate))  # type: ignore[union-attr]
+    data = preparation.split(rig, _kind_of(model, window), runs, _noise_of(model, runs))
+    fewest = min(len(part.problem.windows) for part in (data.identify, data.validate))
     if fewest < FEWEST_WINDOWS:
         raise InputError(
             f"{model.title}: the records of one role make {fewest} windows of {window:g} s; "

@@ -33,7 +33,6 @@ from sms.estimation.nuisance import project
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import common_parameter
-from sms.rigs.cylinder import Comparison
 
 
 @dataclass
@@ -62,9 +61,8 @@ def try_effects(
     current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
 ) -> list[Trial]:
     """The effects fitted on top of the current model, with their p-values among all of them."""
-    if isinstance(data.identify, Runs):
+    if data.identify.whitened:
         return _try_on_runs(current, data, effects, rng)
-    assert isinstance(data.validate, Comparison)
     names = [e.parameters[0] for e in effects]
     columns = np.column_stack([sensitivities(current, data.identify, [n])[:, 0] for n in names])
     scores = score_test(columns, current.fit.residual, data.identify.block, rng)
@@ -106,7 +104,6 @@ def _try_on_runs(
     current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
 ) -> list[Trial]:
     """All effects are screened; those that speak loudest are fitted in full."""
-    assert isinstance(data.identify, Runs)
     found = score_effects(current, data, effects, rng)
     room = np.array([_room(e, current, data.rig) for e in effects])
     promise = found.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
@@ -178,5 +175,5 @@ def _unit(columns: Array) -> Array:
     return np.asarray(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
 
 
-def _unit_columns(current: Fitted, comparison: Comparison, names: list[str]) -> Array:
+def _unit_columns(current: Fitted, comparison: Runs, names: list[str]) -> Array:
     return _unit(np.column_stack([sensitivities(current, comparison, [n])[:, 0] for n in names]))

@@ -30,7 +30,6 @@ def objection(
     descriptions of one machine differ by, and make no record worse by as much.
     """
     runs = data.identify
-    assert isinstance(runs, Runs)
     least = runs.kind.honest[0] * floor
     parts = _parts(trial.fit.residual - current.fit.residual, runs, least)
     before, after = predicted(current, parts) ** 2, predicted(trial, parts) ** 2

@@ -19,7 +19,7 @@ from sms.diagnosis.thresholds import (
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
 from sms.io.signals import without_leg
-from sms.rigs.cylinder import Comparison
+from sms.rigs.cylinder import motions_of
 
 
 def _range(values: Array) -> tuple[float, float]:
@@ -27,8 +27,10 @@ def _range(values: Array) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def levels(data: Comparison, stroke: float) -> str:
-    pressures = [float(np.mean(m.signals["chamber_pressure_lower"][m.used])) for m in data.motions]
+def levels(data: Runs, stroke: float) -> str:
+    pressures = [
+        float(np.mean(m.signals["chamber_pressure_lower"][m.used])) for m in motions_of(data)
+    ]
     if max(pressures) >= PRESSURE_LEVELS * min(pressures):
         return ""
     return (
@@ -37,13 +39,13 @@ def levels(data: Comparison, stroke: float) -> str:
     )
 
 
-def both_directions(data: Comparison, stroke: float) -> str:
+def both_directions(data: Runs, stroke: float) -> str:
     direction = data.inputs["direction"]
     share = float(np.mean(direction > 0))
     return "" if 0.1 < share < 0.9 else "the rod moves one way only; needed are both directions"
 
 
-def travel(data: Comparison, stroke: float) -> str:
+def travel(data: Runs, stroke: float) -> str:
     low, high = _range(data.inputs["extension [m]"])
     if high - low >= TRAVEL_SHARE * stroke:
         return ""
@@ -53,8 +55,8 @@ def travel(data: Comparison, stroke: float) -> str:
     )
 
 
-def speeds(data: Comparison, stroke: float) -> str:
-    ranges = [_range(np.abs(m.velocity[m.used])) for m in data.motions]
+def speeds(data: Runs, stroke: float) -> str:
+    ranges = [_range(np.abs(m.velocity[m.used])) for m in motions_of(data)]
     low, high = max(ranges, key=lambda r: r[1] / r[0])
     if high >= SPEED_RATIO * low:
         return ""
@@ -64,14 +66,14 @@ def speeds(data: Comparison, stroke: float) -> str:
     )
 
 
-def break_away(data: Comparison, stroke: float) -> str:
+def break_away(data: Runs, stroke: float) -> str:
     slowest = float(np.min(np.abs(data.inputs["velocity [m/s]"])))
     if slowest < 1e-3:
         return ""
     return f"no sample below {1e3 * slowest:.1f} mm/s is compared: the start from rest is not in the data"
 
 
-def fast(data: Comparison, stroke: float) -> str:
+def fast(data: Runs, stroke: float) -> str:
     fastest = float(np.max(np.abs(data.inputs["velocity [m/s]"])))
     return (
         ""
@@ -82,8 +84,8 @@ def fast(data: Comparison, stroke: float) -> str:
     )
 
 
-def accelerations(data: Comparison, stroke: float) -> str:
-    values = np.concatenate([m.acceleration[m.used] for m in data.motions])
+def accelerations(data: Runs, stroke: float) -> str:
+    values = np.concatenate([m.acceleration[m.used] for m in motions_of(data)])
     largest = float(np.quantile(np.abs(values), 0.99))
     if largest >= LEAST_ACCELERATION:
         return ""
@@ -93,7 +95,7 @@ def accelerations(data: Comparison, stroke: float) -> str:
     )
 
 
-def motion_forces(data: Comparison, stroke: float) -> str:
+def motion_forces(data: Runs, stroke: float) -> str:
     if not speeds(data, stroke) and not accelerations(data, stroke):
         return ""
     return (
@@ -102,7 +104,7 @@ def motion_forces(data: Comparison, stroke: float) -> str:
     )
 
 
-CHECKS: dict[str, Callable[[Comparison, float], str]] = {
+CHECKS: dict[str, Callable[[Runs, float], str]] = {
     check.__name__: check
     for check in (
         levels,
@@ -223,8 +225,8 @@ RUN_CHECKS: dict[str, Callable[[Runs, float], str]] = {
 }
 
 
-def missing_excitation(needs: tuple[str, ...], data: Comparison | Runs, stroke: float) -> str:
+def missing_excitation(needs: tuple[str, ...], data: Runs, stroke: float) -> str:
     """Why the records cannot show what needs this excitation; empty if they can."""
-    if isinstance(data, Runs):
+    if data.whitened:
         return next((reason for n in needs if (reason := RUN_CHECKS[n](data, stroke))), "")
     return next((reason for name in needs if (reason := CHECKS[name](data, stroke))), "")

@@ -15,7 +15,6 @@ from sms.diagnosis.selection.backward_elimination import backward_elimination
 from sms.diagnosis.selection.candidates import Trial, try_effects
 from sms.diagnosis.selection.validation import Yardstick, ambiguity_group, judge
 from sms.diagnosis.thresholds import MOST_CAUSES, UNKNOWN_CHANCE, UNKNOWN_OF_NOISE, UNKNOWN_SHARE
-from sms.rigs.cylinder import Comparison
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share that is done, 0..1."""
@@ -49,11 +48,10 @@ class Outcome:
 def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatability:
     """How much of a model's error on the validate records repeats from stroke to stroke."""
     v = data.validate
-    assert isinstance(v, Comparison)
     return repeatability(
         residual_of(v, fitted.params),
         v.record,
-        v.stroke,
+        v.window,
         v.inputs["extension [m]"],
         v.inputs["direction"],
         rng,

@@ -17,7 +17,6 @@ from sms.estimation.block_statistics import covariance_of
 from sms.estimation.nuisance import project
 from sms.estimation.windows import Runs
 from sms.parameters import common_parameter
-from sms.rigs.cylinder import Comparison
 from sms.units_display import format_quantity
 
 
@@ -45,7 +44,7 @@ def identifiable(
     return seen, blind
 
 
-def raw_columns(fitted: Fitted, comparison: Comparison | Runs, effects: Sequence[Effect]) -> Array:
+def raw_columns(fitted: Fitted, comparison: Runs, effects: Sequence[Effect]) -> Array:
     """(rows, effects): change of the residual with each effect, on the records that were fitted; worked out once."""
     new = [e for e in effects if e.key not in fitted.columns]
     table = fitted.hypothesis.table
@@ -57,11 +56,11 @@ def raw_columns(fitted: Fitted, comparison: Comparison | Runs, effects: Sequence
 
 
 def _reduced_columns(
-    fitted: Fitted, comparison: Comparison | Runs, effects: Sequence[Effect], raw: Array
+    fitted: Fitted, comparison: Runs, effects: Sequence[Effect], raw: Array
 ) -> Array:
     """(rows, effects): less what the free parameters can undo."""
     names = [e.parameters[0] for e in effects]
-    if isinstance(comparison, Runs):
+    if comparison.whitened:
         return project(nuisance_of(fitted), raw, names)[: len(raw)]
     return np.column_stack([sensitivities(fitted, comparison, [n])[:, 0] for n in names])
 

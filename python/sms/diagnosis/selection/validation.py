@@ -22,7 +22,6 @@ from sms.diagnosis.thresholds import (
     WORTH_OF_NOISE,
 )
 from sms.estimation.block_statistics import interval, resampled, sum_by, weighted_ms
-from sms.estimation.windows import Runs
 from sms.parameters import common_parameter
 from sms.units_display import format_quantity
 
@@ -100,7 +99,7 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
 
 def _insensitive(trial: Trial, current: Fitted, data: Data, yardstick: Yardstick) -> bool:
     """Whether unseen records change less with the trial than two honest descriptions differ by, and no worse for it."""
-    if not isinstance(data.validate, Runs) or trial.gain_interval[1] < 0.0:
+    if not data.validate.whitened or trial.gain_interval[1] < 0.0:
         return False
     honest = data.validate.kind.honest[0] * yardstick.floor
     return cross_validation.change_on_validation(trial.fitted, current, data) < honest
@@ -198,7 +197,6 @@ def least_difference(before: float, best: Fitted, data: Data) -> float:
     left, honest = 0.0, 0.0
     seen = (data.identify, best.fit.residual), (data.validate, unseen(best, data))
     for runs, residual in seen:
-        assert isinstance(runs, Runs)
         noise = float(np.sum(runs.floor(residual)[runs.channel]))
         honest += runs.kind.honest[0] * noise
         left += float(np.sum(residual**2)) - noise
