@@ -79,6 +79,7 @@ HeatRatios<S> tank_ratios(const Tank<S>& tank) {
 // What flows through the valve and past it.
 template <typename S>
 void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) {
+  using std::abs;
   const Params<S>& p = tank.params;
   const S opening = valve_opening(p, state.spool.value);
   const OpenEdges<S> edges = open_edges(p, tank.laws.valve, tank_ratios(tank), opening);
@@ -89,10 +90,11 @@ void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) 
   t.space.volume += tube_volume(p);
   t.feed = t.vent = S(0);
   if (opening >= S(0)) {
-    t.feed = gain * edge_flow(p, tank.laws.valve, edges.feed, edges.area, supply, t.air);
+    t.feed = gain * (S(1) + feed_map_error<S>(p, opening)) *
+             edge_flow(p, tank.laws.valve, edges.feed, edges.area, supply, t.air);
   } else {
-    t.vent =
-        gain * (S(1) + p.exhaust_flow_change) * edge_flow(p, tank.laws.valve, edges.vent, edges.area, t.air, outside);
+    t.vent = gain * (S(1) + p.exhaust_flow_change) * (S(1) + vent_map_error<S>(p, abs(opening))) *
+             edge_flow(p, tank.laws.valve, edges.vent, edges.area, t.air, outside);
   }
   if (!is_absent(p.tube_length)) {
     const S passes = tube_transmission<S>(p, t.feed - t.vent, t.air.pressure);

@@ -24,6 +24,9 @@
 // the flow over |V - centre|. On a cylinder they are multiplied by mass_flow_gain, 1.5 to 1.65; on the tank where they
 // were measured it is 1. The classic law has its discharge coefficient instead.
 //
+// The tables' flow is not exact. flow_map_feed_1.. and flow_map_vent_1.. are its relative error at some openings, linear
+// in between and constant beyond; zero leaves every result unchanged.
+//
 // Effects, absent until data switches them on: valve_leakage (a labyrinth past the lands on all four edges: the ISO law
 // with b = 0 and m = 2, sqrt(p1^2 - p2^2)), dead_band_width, exhaust_restriction.
 #pragma once
@@ -112,6 +115,39 @@ OpenEdges<S> open_edges(const Params<S>& p, ValveLaw law, const HeatRatios<S>& r
   return edges;
 }
 
+// ---- what is not known of the tables ----
+
+constexpr int flow_map_knots() { return 6; }
+
+// Relative error of the flow at |opening| from its values at the knots; zero everywhere, with its derivatives, where
+// they are.
+template <typename S>
+S flow_map_error(const S (&at_knots)[flow_map_knots()], const S& opening) {
+  using V = ValueOf<S>;
+  constexpr V knot[flow_map_knots()] = {V(0.6), V(0.75), V(0.95), V(1.25), V(1.8), V(3.0)};  // V
+  int above = 1;
+  while (above < flow_map_knots() - 1 && opening > S(knot[above])) {
+    ++above;
+  }
+  const S span(knot[above] - knot[above - 1]);
+  const S place = limited<S>((opening - S(knot[above - 1])) / span, S(0), S(1));
+  return at_knots[above - 1] + place * (at_knots[above] - at_knots[above - 1]);
+}
+
+template <typename S>
+S feed_map_error(const Params<S>& p, const S& opening) {
+  return flow_map_error<S>({p.flow_map_feed_1, p.flow_map_feed_2, p.flow_map_feed_3, p.flow_map_feed_4,
+                            p.flow_map_feed_5, p.flow_map_feed_6},
+                           opening);
+}
+
+template <typename S>
+S vent_map_error(const Params<S>& p, const S& opening) {
+  return flow_map_error<S>({p.flow_map_vent_1, p.flow_map_vent_2, p.flow_map_vent_3, p.flow_map_vent_4,
+                            p.flow_map_vent_5, p.flow_map_vent_6},
+                           opening);
+}
+
 // ---- flow ----
 
 // The air at the four ports.
@@ -153,11 +189,13 @@ EdgeFlows<S> leakage_flows(const Params<S>& p, const ValvePorts<S>& ports) {
 template <typename S>
 EdgeFlows<S> valve_flows(const Params<S>& p, ValveLaw law, const HeatRatios<S>& ratios, const S& voltage,
                          const ValvePorts<S>& ports) {
+  using std::abs;
   EdgeFlows<S> flow = leakage_flows(p, ports);
   const S opening = valve_opening(p, voltage);
   const OpenEdges<S> edges = open_edges(p, law, ratios, opening);
-  const S feed_gain = law == ValveLaw::classic ? S(1) : p.mass_flow_gain;
-  const S vent_gain = feed_gain * (S(1) + p.exhaust_flow_change);
+  const S gain = law == ValveLaw::classic ? S(1) : p.mass_flow_gain;
+  const S feed_gain = gain * (S(1) + feed_map_error<S>(p, abs(opening)));
+  const S vent_gain = gain * (S(1) + p.exhaust_flow_change) * (S(1) + vent_map_error<S>(p, abs(opening)));
   if (opening >= S(0)) {
     flow.supply_lower += feed_gain * edge_flow(p, law, edges.feed, edges.area, ports.supply, ports.lower);
     flow.upper_exhaust += vent_gain * edge_flow(p, law, edges.vent, edges.area, ports.upper, ports.exhaust);
