@@ -59,6 +59,12 @@ class Run:
         values: Array = self.rows[:, self.columns.index(column)]
         return values
 
+    def reading(self, signal: str) -> Array:
+        """What the sensor of a signal says, (n,): signal as in a record, "extension_2"."""
+        if signal == "supply_pressure" and "supply_pressure_1" in self.columns:
+            return self["supply_pressure_1"]
+        return self[signal]
+
     def legs(self, column: str) -> Array:
         """The columns `column`_1 to _3 of the platform side by side, (n, 3)."""
         return np.column_stack([self[f"{column}_{leg}"] for leg in (1, 2, 3)])
