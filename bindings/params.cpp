@@ -40,6 +40,25 @@ std::string represent(const Params& params) {
   return "Params(" + text + ")";
 }
 
+// What signals.def says of one signal.
+struct SignalInfo {
+  const char* name;
+  const char* unit;
+  const char* label;
+  double low, high;
+  bool of_leg;
+  bool has_sensor;
+};
+
+const SignalInfo signal_table[] = {
+#define SMS_SIGNAL(name, unit, label, low, high) {#name, unit, label, low, high, false, false},
+#define SMS_LEG_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high) \
+  {#name, unit, label, low, high, true, true},
+#define SMS_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high) \
+  {#name, unit, label, low, high, false, true},
+#include "sms/signals.def"
+};
+
 bool equal(const Params& a, const Params& b) {
   for (int i = 0; i < sms::param_count; ++i) {
     if (sms::param(a, i) < sms::param(b, i) || sms::param(a, i) > sms::param(b, i)) {
@@ -80,6 +99,25 @@ void bind_params(py::module_& m) {
         return py::typing::List<sms_param_info>(table);
       },
       "Every parameter, in the order of params.def.");
+
+  py::class_<SignalInfo>(m, "SignalInfo", "What signals.def says of one signal.")
+      .def_readonly("name", &SignalInfo::name)
+      .def_readonly("unit", &SignalInfo::unit, "SI, as pint reads it")
+      .def_readonly("label", &SignalInfo::label, "of its sensor, in words")
+      .def_readonly("low", &SignalInfo::low, "What such a sensor usually reads: no less,")
+      .def_readonly("high", &SignalInfo::high, "and no more.")
+      .def_readonly("of_leg", &SignalInfo::of_leg, "Each actuator of the platform has one.")
+      .def_readonly("has_sensor", &SignalInfo::has_sensor, "There are parameters for the errors of its sensor.");
+  m.def(
+      "signal_table",
+      [] {
+        py::list table;
+        for (const SignalInfo& signal : signal_table) {
+          table.append(py::cast(&signal, py::return_value_policy::reference));
+        }
+        return py::typing::List<SignalInfo>(table);
+      },
+      "Every measured signal, in the order of signals.def.");
 
   py::class_<Params> params(m, "Params",
                             "Every parameter of the machine in SI units, at its default unless given by keyword.\n\n"

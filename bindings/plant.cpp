@@ -1,7 +1,11 @@
 // Plants under sampled control: bench, platform and tank, a block of periods at a time.
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
+#include <optional>
+
+#include <pybind11/eigen.h>
 
 #include "choice.hpp"
 #include "rows.hpp"
@@ -15,6 +19,7 @@ using sms::FrictionLaw;
 using sms::MassModel;
 using sms::PositionControl;
 using sms::ValveLaw;
+using Channel = sms::Channel<double>;
 
 sms::ActuatorLaws laws_of(const std::string& valve, const std::string& friction, const std::string& chamber,
                           bool electronics) {
@@ -40,6 +45,18 @@ PositionControl control_of(const std::string& name) {
                                   {"state_feedback", PositionControl::state_feedback}});
 }
 
+Channel make_channel(double noise, double low, double high, double resolution, const std::string& rounding) {
+  using sms::Rounding;
+  Channel channel;
+  channel.noise = noise;
+  channel.low = low;
+  channel.high = high;
+  channel.resolution = resolution;
+  channel.rounding =
+      choice<Rounding>("rounding", rounding, {{"nearest", Rounding::nearest}, {"down", Rounding::down}});
+  return channel;
+}
+
 // ---- what a row of the answer holds ----
 
 void add_actuator_names(const std::string& leg, std::vector<std::string>& names) {
@@ -53,6 +70,7 @@ void add_actuator_names(const std::string& leg, std::vector<std::string>& names)
 std::vector<std::string> state_names(const sms::Bench<double>&) {
   std::vector<std::string> names = {"extension", "velocity"};
   add_actuator_names("", names);
+  names.push_back("film_velocity");
   return names;
 }
 
@@ -60,6 +78,9 @@ std::vector<std::string> state_names(const sms::Platform<double>&) {
   std::vector<std::string> names = {"roll", "pitch", "height", "roll_rate", "pitch_rate", "height_rate"};
   for (const char* leg : {"_1", "_2", "_3"}) {
     add_actuator_names(leg, names);
+  }
+  for (const char* leg : {"_1", "_2", "_3"}) {
+    names.push_back(std::string("film_velocity") + leg);
   }
   return names;
 }
@@ -114,6 +135,78 @@ void write_terms(const sms::Simulation<sms::Platform<double>>& s, double* row) {
   }
 }
 
+// A state as a row has it, and back: as it lies in memory but for the films of a platform's seals, which come last.
+template <typename State>
+constexpr int place_in_row(const State&, int number) {
+  return number;
+}
+
+int place_in_row(const sms::PlatformState<double>&, int number) {
+  constexpr int of_platform = 6, of_leg = sms::StateVector<sms::PlatformState<double>>::size / 3 - 2;
+  const int leg = (number - of_platform) / of_leg, within = (number - of_platform) % of_leg;
+  if (number < of_platform) {
+    return number;
+  }
+  return within == of_leg - 1 ? of_platform + 3 * (of_leg - 1) + leg : of_platform + (of_leg - 1) * leg + within;
+}
+
+template <typename State>
+void write_state(const State& state, double* row) {
+  const auto x = sms::vector_of(state);
+  for (int i = 0; i < int(x.size()); ++i) {
+    row[place_in_row(state, i)] = x(i);
+  }
+}
+
+template <typename State>
+void read_state(const double* row, State& state) {
+  auto x = sms::vector_of(state);
+  for (int i = 0; i < int(x.size()); ++i) {
+    x(i) = row[place_in_row(state, i)];
+  }
+}
+
+// ---- readings ----
+
+// visit(name, leg, sensor, value, rate) for every sensor of the plant.
+template <typename Plant, typename Visit>
+void each_sensor(const sms::Simulation<Plant>& s, const Visit& visit) {
+  s.sensors.each(s.plant, s.run.state, s.run.rate, s.system.terms, visit);
+}
+
+using DoubleSensor = sms::Sensor<double>;
+
+template <typename Plant>
+std::vector<std::string> reading_names(const sms::Simulation<Plant>& s) {
+  std::vector<std::string> names;
+  each_sensor(s, [&](const char* name, int leg, const DoubleSensor&, double, double) {
+    names.push_back("reading_" + std::string(name) + (leg > 0 ? "_" + std::to_string(leg) : ""));
+  });
+  return names;
+}
+
+// By how many whole periods the clock of each reading's logger is late.
+template <typename Plant>
+std::vector<int> late_periods(const sms::Simulation<Plant>& s) {
+  std::vector<int> late;
+  double rest;
+  each_sensor(s, [&](const char*, int, const DoubleSensor& sensor, double, double) {
+    late.push_back(sms::whole_samples(s.period, sensor.errors().clock, &rest));
+  });
+  return late;
+}
+
+// As the loggers have them, but for whole periods of their clocks. noise: of the extension of each leg, m.
+template <typename Plant>
+void write_readings(const sms::Simulation<Plant>& s, const double* noise, double* row) {
+  each_sensor(s, [&](const char* name, int leg, const DoubleSensor& sensor, double value, double rate) {
+    double rest;
+    sms::whole_samples(s.period, sensor.errors().clock, &rest);
+    const bool of_extension = std::strcmp(name, "extension") == 0;
+    *row++ = sensor.reading(value, rate, rest) + (of_extension ? noise[leg > 0 ? leg - 1 : 0] : 0.0);
+  });
+}
+
 void set_load(const double* /*nothing pushes on a tank*/, sms::TankInput<double>&) {}
 
 void set_load(const double* value, sms::BenchInput<double>& input) { input.load_force = value[0]; }
@@ -137,14 +230,17 @@ class Simulation {
   static constexpr py::ssize_t kStates = sms::StateVector<State>::size;
 
   Simulation(const Params& controller, const Plant& plant, const State& initial, const typename Plant::Input& input,
-             const std::string& control, bool compensated, bool electronics, double tolerance, double step)
-      : params_(controller), run_(plant), width_(kStates + static_cast<py::ssize_t>(term_names(plant).size())) {
+             const std::string& control, bool compensated, bool electronics, double tolerance, double step, bool stiff)
+      : params_(controller), run_(plant), readings_(kStates + static_cast<py::ssize_t>(term_names(plant).size())) {
     const sms_status status =
         begin_simulation(initial, input, params_, control_of(control), compensated, electronics, tolerance, run_);
     if (status != SMS_OK) {
       raise_status(status, "the simulation cannot begin: " + why(status));
     }
     run_.fixed_step = step;
+    run_.stiff = stiff;
+    late_ = late_periods(run_);
+    width_ = readings_ + static_cast<py::ssize_t>(late_.size());
   }
 
   // (rows, status, how many rows are done). As many periods as there are rows; each row of the answer is the plant at
@@ -165,10 +261,11 @@ class Simulation {
           break;
         }
         double* const row = out.row(done);
-        sms::vector_of(*out.row_as<State>(done)) = sms::vector_of(run_.run.state);
+        write_state(run_.run.state, row);
         status =
             sms::take_sample(params_, setpoint.data() + done * Plant::legs, noise.data() + done * Plant::legs, run_);
         write_terms(run_, row + kStates);
+        write_readings(run_, noise.data() + done * Plant::legs, row + readings_);
         status = status == SMS_OK ? sms::run_period(run_) : status;
         if (status != SMS_OK) {
           break;
@@ -178,12 +275,39 @@ class Simulation {
     return py::make_tuple(out.array(), int(status), done);
   }
 
+  // The rows of a whole run as its loggers have them: clocks that are late, then what each channel makes of its reading.
+  // draws: (n, readings), standard normal.
+  Rows record(const Rows& rows, const std::vector<Channel>& channels, const Rows& draws) const {
+    const py::ssize_t n = row_count(rows, width_), count = static_cast<py::ssize_t>(late_.size());
+    if (static_cast<py::ssize_t>(channels.size()) != count || row_count(draws, count) != n) {
+      throw py::value_error("a channel and a column of draws for every reading are needed");
+    }
+    const Output out(n, width_);
+    for (py::ssize_t i = 0; i < n; ++i) {
+      std::copy_n(rows.data() + i * width_, readings_, out.row(i));
+      for (py::ssize_t k = 0; k < count; ++k) {
+        const std::size_t at = static_cast<std::size_t>(k);
+        const py::ssize_t then = std::min(std::max<py::ssize_t>(i - late_[at], 0), n - 1);
+        out.row(i)[readings_ + k] =
+            channels[at].recorded(rows.data()[then * width_ + readings_ + k], draws.data()[i * count + k]);
+      }
+    }
+    return out.array();
+  }
+
+  // The state now, as the first columns of a row have it; it begins a run that goes on from here.
+  Eigen::VectorXd state() const {
+    Eigen::VectorXd row(kStates);
+    write_state(run_.run.state, row.data());
+    return row;
+  }
+
   // What a status of advance() means for this plant, in words.
   std::string why(sms_status status) const {
     if (status != SMS_OUT_OF_RANGE) {
       return sms_status_string(status);
     }
-    if (run_.delay_periods >= sms::longest_delay()) {
+    if (*std::max_element(run_.delay_periods, run_.delay_periods + Plant::legs) >= sms::longest_delay()) {
       return "command_delay and the tube's delay together are " + std::to_string(sms::longest_delay()) +
              " control periods or more";
     }
@@ -200,8 +324,12 @@ class Simulation {
     for (const std::string& name : term_names(run_.plant)) {
       names.push_back(name);
     }
+    for (const std::string& name : readings()) {
+      names.push_back(name);
+    }
     return names;
   }
+  std::vector<std::string> readings() const { return reading_names(run_); }
 
  private:
   // What was known of the next step is no longer true when a load has jumped.
@@ -216,9 +344,23 @@ class Simulation {
 
   Params params_;
   sms::Simulation<Plant> run_;
-  py::ssize_t width_;
+  py::ssize_t readings_;  // column where the readings begin
+  py::ssize_t width_ = 0;
+  std::vector<int> late_;
   std::vector<double> load_;
 };
+
+// The state that was asked for, or the one at rest.
+template <typename State>
+State initial_state(const std::optional<Eigen::VectorXd>& given, State rest) {
+  if (given) {
+    if (given->size() != sms::StateVector<State>::size) {
+      throw py::value_error("a state of this plant has " + std::to_string(sms::StateVector<State>::size) + " numbers");
+    }
+    read_state(given->data(), rest);
+  }
+  return rest;
+}
 
 using BenchSimulation = Simulation<sms::Bench<double>>;
 using PlatformSimulation = Simulation<sms::Platform<double>>;
@@ -229,11 +371,13 @@ std::unique_ptr<BenchSimulation> make_bench_simulation(const Params& params, con
                                                        const std::string& chamber, const std::string& control,
                                                        bool compensated, bool electronics, double extension,
                                                        double load_force, double mean_pressure, double tolerance,
-                                                       double step) {
+                                                       double step, bool stiff,
+                                                       const std::optional<Eigen::VectorXd>& state) {
   const auto bench = sms::make_bench(params, laws_of(valve, friction, chamber, electronics));
   return std::make_unique<BenchSimulation>(
-      controller, bench, sms::bench_at_rest(bench, extension, load_force, mean_pressure),
-      sms::BenchInput<double>{params.valve_centre, load_force}, control, compensated, electronics, tolerance, step);
+      controller, bench, initial_state(state, sms::bench_at_rest(bench, extension, load_force, mean_pressure)),
+      sms::BenchInput<double>{params.valve_centre, load_force}, control, compensated, electronics, tolerance, step,
+      stiff);
 }
 
 std::unique_ptr<PlatformSimulation> make_platform_simulation(const std::array<Params, 3>& params,
@@ -241,7 +385,8 @@ std::unique_ptr<PlatformSimulation> make_platform_simulation(const std::array<Pa
                                                              const std::string& friction, const std::string& chamber,
                                                              int masses, const std::string& control, bool compensated,
                                                              bool electronics, const std::array<double, 3>& q,
-                                                             double mean_pressure, double tolerance, double step) {
+                                                             double mean_pressure, double tolerance, double step,
+                                                             bool stiff, const std::optional<Eigen::VectorXd>& state) {
   auto platform = sms::make_platform(params[0], laws_of(valve, friction, chamber, electronics), MassModel(masses));
   sms::PlatformInput<double> input{sms::Vec3<double>::Zero(), {sms::Vec3<double>::Zero(), sms::Vec3<double>::Zero()}};
   for (int i = 0; i < 3; ++i) {
@@ -254,17 +399,18 @@ std::unique_ptr<PlatformSimulation> make_platform_simulation(const std::array<Pa
   if (status != SMS_OK) {
     raise_status(status, "the pose to begin with: " + std::string(sms_status_string(status)));
   }
-  return std::make_unique<PlatformSimulation>(controller, platform, initial, input, control, compensated, electronics,
-                                              tolerance, step);
+  return std::make_unique<PlatformSimulation>(controller, platform, initial_state(state, initial), input, control,
+                                              compensated, electronics, tolerance, step, stiff);
 }
 
 std::unique_ptr<TankSimulation> make_tank_simulation(const Params& params, const std::string& valve,
                                                      const std::string& chamber, double pressure, double tolerance,
-                                                     double step) {
+                                                     double step, bool stiff,
+                                                     const std::optional<Eigen::VectorXd>& state) {
   const sms::Tank<double> tank = {params, laws_of(valve, "acceleration_dependent", chamber, false)};
-  return std::make_unique<TankSimulation>(params, tank, sms::tank_at_rest(params, pressure),
+  return std::make_unique<TankSimulation>(params, tank, initial_state(state, sms::tank_at_rest(params, pressure)),
                                           sms::TankInput<double>{params.valve_centre}, "open_loop", false, false,
-                                          tolerance, step);
+                                          tolerance, step, stiff);
 }
 
 template <typename Bound>
@@ -274,7 +420,12 @@ void add_running(py::class_<Bound>& c) {
       .def(
           "why", [](const Bound& bound, int status) { return bound.why(sms_status(status)); }, py::arg("status"),
           "What a status of advance() means for this plant, in words.")
+      .def("record", &Bound::record, py::arg("rows"), py::arg("channels"), py::arg("draws"),
+           "The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; draws "
+           "(n, readings), standard normal.")
       .def_property_readonly("columns", &Bound::columns, "What each column of a row is.")
+      .def_property_readonly("readings", &Bound::readings, "The last of those columns: what the sensors say.")
+      .def_property_readonly("state", &Bound::state, "Where the plant is, as the first columns of a row.")
       .def_property_readonly("time", &Bound::time, "s, where the plant is.")
       .def_property_readonly("evaluations", &Bound::evaluations, "Of the plant's derivative, so far.")
       .def_property_readonly("steps", &Bound::steps, "Of the integrator, so far.")
@@ -284,22 +435,30 @@ void add_running(py::class_<Bound>& c) {
 }  // namespace
 
 void bind_plant(py::module_& m) {
+  py::class_<Channel>(m, "Channel", "What a logger's channel makes of a reading: noise, range, rounding (sensor.hpp).")
+      .def(py::init(&make_channel), py::kw_only(), py::arg("noise") = 0.0, py::arg("low") = Channel().low,
+           py::arg("high") = Channel().high, py::arg("resolution") = 0.0, py::arg("rounding") = "nearest",
+           "noise: standard deviation; low, high: where the reading stays; resolution: step of the converter, which "
+           "rounds to the \"nearest\" or \"down\".");
   py::class_<BenchSimulation> bench(m, "BenchSimulation", "One actuator under sampled control (simulate.hpp).");
   bench.def(py::init(&make_bench_simulation), py::kw_only(), py::arg("params"), py::arg("controller"),
             py::arg("valve_law"), py::arg("friction_law"), py::arg("chamber_law"), py::arg("control"),
             py::arg("compensated"), py::arg("electronics"), py::arg("extension"), py::arg("load_force"),
-            py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"));
+            py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"),
+            py::arg("stiff") = false, py::arg("state") = py::none());
   add_running(bench);
   py::class_<PlatformSimulation> platform(m, "PlatformSimulation",
                                           "The platform under sampled control (simulate.hpp).");
   platform.def(py::init(&make_platform_simulation), py::kw_only(), py::arg("params"), py::arg("controller"),
                py::arg("valve_law"), py::arg("friction_law"), py::arg("chamber_law"), py::arg("masses"),
                py::arg("control"), py::arg("compensated"), py::arg("electronics"), py::arg("q"),
-               py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"));
+               py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"),
+            py::arg("stiff") = false, py::arg("state") = py::none());
   add_running(platform);
   py::class_<TankSimulation> tank(m, "TankSimulation", "The tank of the flow test behind its valve (tank.hpp).");
   tank.def(py::init(&make_tank_simulation), py::kw_only(), py::arg("params"), py::arg("valve_law"),
-           py::arg("chamber_law"), py::arg("pressure"), py::arg("tolerance"), py::arg("step"));
+           py::arg("chamber_law"), py::arg("pressure"), py::arg("tolerance"), py::arg("step"),
+            py::arg("stiff") = false, py::arg("state") = py::none());
   add_running(tank);
 }
 

@@ -59,7 +59,8 @@ est::LegSignals columns(const Eigen::MatrixX3d& signals) { return {signals.col(0
 est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, const Eigen::MatrixX3d& extension,
                                 const Eigen::MatrixX3d& pressure_lower, const Eigen::MatrixX3d& pressure_upper,
                                 Eigen::VectorXd supply_pressure, Eigen::VectorXd roll, Eigen::VectorXd pitch,
-                                const std::map<std::string, double>& conditions, const Eigen::MatrixX3d& setpoint) {
+                                const std::map<std::string, double>& conditions, const Eigen::MatrixX3d& setpoint,
+                                const std::string& hold) {
   return {step,
           columns(command),
           columns(extension),
@@ -69,7 +70,8 @@ est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, co
           std::move(roll),
           std::move(pitch),
           conditions_of(conditions),
-          columns(setpoint)};
+          columns(setpoint),
+          hold_of(hold)};
 }
 
 Eigen::Vector3d of_legs(const Noise& noise, const std::string& signal) {
@@ -137,7 +139,9 @@ void bind_platform_problem(py::module_& m) {
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
            py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(),
            py::arg("conditions") = std::map<std::string, double>(), py::arg("setpoint") = Eigen::MatrixX3d(),
-           "setpoint: of a loop that is simulated, where command may be empty: not measured.");
+           py::arg("hold") = "linear",
+           "setpoint: of a loop that is simulated, where command may be empty: not measured. hold: what the valves have "
+           "between two samples of the commands, \"linear\" or the \"previous\" one.");
   auto problem = bind_shooting_problem<est::PlatformPlant>(m, "PlatformProblem");
   bind_evaluate<PlatformProblem>(problem);
   problem.def(

@@ -21,7 +21,7 @@ constexpr double kRunUp = 0.1;  // s
 est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::VectorXd extension,
                                    Eigen::VectorXd pressure_lower, Eigen::VectorXd pressure_upper,
                                    Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions,
-                                   Eigen::VectorXd setpoint) {
+                                   Eigen::VectorXd setpoint, const std::string& hold) {
   return {step,
           std::move(command),
           std::move(extension),
@@ -29,7 +29,8 @@ est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::
           std::move(pressure_upper),
           std::move(supply_pressure),
           conditions_of(conditions),
-          std::move(setpoint)};
+          std::move(setpoint),
+          hold_of(hold)};
 }
 
 est::BenchNoise bench_noise(const Noise& noise) {
@@ -61,13 +62,14 @@ std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::Bench
 
 est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eigen::VectorXd pressure,
                                       Eigen::VectorXd temperature, Eigen::VectorXd supply_pressure,
-                                      const std::map<std::string, double>& conditions) {
+                                      const std::map<std::string, double>& conditions, const std::string& hold) {
   return {step,
           std::move(command),
           std::move(pressure),
           std::move(temperature),
           std::move(supply_pressure),
-          conditions_of(conditions)};
+          conditions_of(conditions),
+          hold_of(hold)};
 }
 
 std::unique_ptr<TankPlantProblem> make_tank_problem(std::vector<est::TankPlantRecord> records, const Noise& noise,
@@ -79,14 +81,30 @@ std::unique_ptr<TankPlantProblem> make_tank_problem(std::vector<est::TankPlantRe
       est::WindowOptions{window, kRunUp, threads});
 }
 
+// The plant where a window begins, as a simulation takes it (plant.cpp).
+template <typename Problem>
+void bind_state(py::class_<Problem, est::Problem>& problem) {
+  problem.def(
+      "state",
+      [](const Problem& p, const Params& params, std::size_t window) {
+        return p.plant().state(params, p.windows().at(window), p.found(window));
+      },
+      py::arg("params"), py::arg("window"),
+      "State of the plant where a window begins, at the initial state found last; simulate_bench and simulate_tank go on "
+      "from it.");
+}
+
 void bind_bench(py::module_& m) {
   py::class_<est::BenchRecord>(m, "BenchRecord", "One evenly sampled record of the rig 'bench'; arrays (n,), SI.")
       .def(py::init(&make_bench_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
            py::arg("conditions") = std::map<std::string, double>(), py::arg("setpoint") = Eigen::VectorXd(),
-           "setpoint: of a loop that is simulated, where command may be empty: not measured.");
-  bind_shooting_problem<est::BenchPlant, est::Problem>(m, "BenchProblem")
-      .def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+           py::arg("hold") = "linear",
+           "setpoint: of a loop that is simulated, where command may be empty: not measured. hold: what the valve has "
+           "between two samples of the command, \"linear\" or the \"previous\" one.");
+  auto bench = bind_shooting_problem<est::BenchPlant, est::Problem>(m, "BenchProblem");
+  bind_state(bench);
+  bench.def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
            py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
            py::arg("threads") = 1,
@@ -109,9 +127,10 @@ void bind_tank(py::module_& m) {
                                    "is no sensor.")
       .def(py::init(&make_tank_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("pressure"),
            py::arg("temperature") = Eigen::VectorXd(), py::arg("supply_pressure") = Eigen::VectorXd(),
-           py::arg("conditions") = std::map<std::string, double>());
-  bind_shooting_problem<est::TankPlant, est::Problem>(m, "TankPlantProblem")
-      .def(py::init(&make_tank_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+           py::arg("conditions") = std::map<std::string, double>(), py::arg("hold") = "linear");
+  auto tank = bind_shooting_problem<est::TankPlant, est::Problem>(m, "TankPlantProblem");
+  bind_state(tank);
+  tank.def(py::init(&make_tank_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic", py::arg("window") = 1.0,
            py::arg("longest_step") = 1e-3, py::arg("threads") = 1,
            "noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden "
@@ -126,7 +145,8 @@ void bind_plant_problems(py::module_& m) {
       .def_readonly("first", &est::Window::first)
       .def_readonly("samples", &est::Window::samples)
       .def_readonly("row", &est::Window::row)
-      .def_readonly("rows", &est::Window::rows);
+      .def_readonly("rows", &est::Window::rows)
+      .def_readonly("start", &est::Window::start, "Where the search for its initial state begins.");
   bind_bench(m);
   bind_tank(m);
 }

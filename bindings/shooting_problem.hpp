@@ -40,6 +40,11 @@ inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string&
           false};
 }
 
+inline sms::estimation::Hold hold_of(const std::string& hold) {
+  using sms::estimation::Hold;
+  return choice<Hold>("hold", hold, {{"linear", Hold::linear}, {"previous", Hold::previous}});
+}
+
 inline sms::estimation::ControlLaw control_law(const std::string& law, bool compensated, bool electronics) {
   using sms::PositionControl;
   return {choice<PositionControl>("law", law,

@@ -17,6 +17,7 @@
 // given the readings, the recorded command depends on the controller alone.
 #pragma once
 
+#include "estimation/hidden_inputs.hpp"
 #include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
 #include "sms/position_loop.hpp"
@@ -103,11 +104,11 @@ template <typename S>
 class SimulatedController {
  public:
   // integral: of the controller where it begins to be fed with the record, V. hidden: a voltage at the controller's
-  // output, `knots` values in the window, or nullptr. noise: of the recorded command, V.
+  // output, if any. noise: of the recorded command, V.
   // The parameters have to last.
   SimulatedController(const Params<S>& p, const ActuatorLaws& laws, const ControlRecord& record, const Window& window,
-                      const ControlLaw& law, const ControlGrid& grid, const S& h, const S& integral, const S* hidden,
-                      int knots, double noise)
+                      const ControlLaw& law, const ControlGrid& grid, const S& h, const S& integral,
+                      const HiddenInputs<S>& hidden, double noise)
       : p_(p),
         laws_(laws),
         record_(record),
@@ -116,7 +117,6 @@ class SimulatedController {
         h_(h),
         late_((p.command_delay + tube_delay(p)) / h),
         hidden_(hidden),
-        knots_(knots),
         noise_(noise),
         begins_(grid.begins(window.first, record.step)),
         simulated_(p, law),
@@ -153,12 +153,12 @@ class SimulatedController {
   // Step i after sample k of the window begins at state y: the controller takes its sample if it is time.
   void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>& sensors, BenchState<S>& rate) {
     const int q = (window_.first + k) * grid_.steps + i;
-    if (hidden_ != nullptr) {
-      pushed_ = detail::hidden_at(hidden_, knots_, window_.samples, k + double(i) / grid_.steps);
+    if (hidden_) {
+      pushed_ = hidden_.at(0, k + double(i) / grid_.steps);
     }
     if (q % grid_.every == 0) {
       const int j = q / grid_.every;
-      sent_.push_back(simulated_.sample(setpoint(j), sensors.extension_reading(p_, y, S(0))));
+      sent_.push_back(simulated_.sample(setpoint(j), sensors.extension_reading(y.velocity)));
       by_record_ = fed_.sample(setpoint(j), reading(j));
     }
     mean_ = arriving(q) + pushed_;
@@ -204,8 +204,7 @@ class SimulatedController {
   const Window& window_;
   ControlGrid grid_;
   S h_, late_;
-  const S* hidden_;
-  int knots_;
+  HiddenInputs<S> hidden_;
   double noise_;
   int begins_;
   SampledController<S> simulated_, fed_;

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "estimation/bench_rates.hpp"
 #include "estimation/jets.hpp"
 
 namespace sms {
@@ -23,23 +22,22 @@ void BenchEquations::errors(Params<S> params, S* out) const {
   for (const auto& condition : signals_.conditions) {
     param(params, condition.first) += S(condition.second);
   }
-  const BenchRates<S> rates(params, laws_);
-  const Params<S>& p = rates.params();
+  const Bench<S> bench = make_bench(params, laws_);
+  const Params<S>& p = bench.params;
   const ActuatorSignals& signals = signals_.actuator;
   const double step = signals_.step;
   const S late = p.command_delay / S(step);
 
   ActuatorTruth<S> now = actuator_truth(p, signals, 0, step);
-  BenchState<S> state{S(0), S(0), actuator_at_rest<S>(p, S(0), S(0))}, rate;
-  BenchTerms<S> t;
-  S film = now.extension.rate;
+  BenchState<S> state = measured_begin(p, now), rate{};
+  BenchTerms<S> t{};
   S reservoir = reads_supply() ? supply_truth(p, signals_.supply_pressure, 0, step).value : p.supply_pressure;
   for (int k = 0;; ++k) {
     hold_to(now, state);
     const S supply = reads_supply() ? supply_truth(p, signals_.supply_pressure, k, step).value : reservoir;
     state.actuator.supply_pressure = supply;
     state.actuator.spool = spool_at_sample(p, signals.command, k, step);
-    rates(state, detail::command_at<S>(signals.command, S(k) - late), film, t, rate);
+    derivative<S>(bench, state, {detail::command_at<S>(signals.command, S(k) - late), S(0)}, t, rate);
     *out++ = p.moving_mass * (rate.velocity - now.extension.second);
     *out++ = as_flow<S>(p, t.actuator.lower, rate.actuator.lower.pressure - now.lower.rate);
     *out++ = as_flow<S>(p, t.actuator.upper, rate.actuator.upper.pressure - now.upper.rate);
@@ -51,7 +49,7 @@ void BenchEquations::errors(Params<S> params, S* out) const {
       return;
     }
     const ActuatorTruth<S> next = actuator_truth(p, signals, k + 1, step);
-    film = film_after(p, film, now, next, step);
+    follow_film(p, now, next, step, state.actuator);
     reservoir = reservoir_after<S>(p, reservoir, t.actuator.flow.drawn, step);
     follow<S>(p, laws_.friction, p.moving_mass, step, t.actuator, rate, state.actuator);
     now = next;

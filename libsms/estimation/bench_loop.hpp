@@ -29,10 +29,10 @@ class BenchLoopPlant : public BenchPlant {
   void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
                 int knots = 0) const {
     const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
-    const S* const at_output = hidden == nullptr ? nullptr : hidden + BenchPlant::kHidden * knots;
-    const auto controlled = [&](const BenchRates<S>& rates, const S& h) {
-      return SimulatedController<S>(rates.params(), laws(), control_record(window.record), window, law_, grid, h,
-                                    start[BenchPlant::kStart], at_output, knots, command_noise_);
+    const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(BenchPlant::kHidden);
+    const auto controlled = [&](const Bench<S>& bench, const S& h) {
+      return SimulatedController<S>(bench.params, laws(), control_record(window.record), window, law_, grid, h,
+                                    start[BenchPlant::kStart], at_output, command_noise_);
     };
     simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
   }

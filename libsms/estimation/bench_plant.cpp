@@ -46,10 +46,20 @@ Eigen::VectorXd BenchPlant::guess(int record, int first) const {
   return start;
 }
 
+Eigen::VectorXd BenchPlant::state(const Params<double>& params, const Window& window,
+                                  const Eigen::VectorXd& start) const {
+  const BenchRecord& record = of(window.record);
+  const Bench<double> bench = make_bench(in_run(params, record), laws_);
+  const int steps = detail::steps_over(record.step, longest_step_);
+  RecordedCommand<double> drive(bench.params, laws_, record.command, record.hold, record.step, window.first, steps,
+                                record.step / steps);
+  const BenchState<double> state = begin(bench, start.data(), drive);
+  return vector_of(state);
+}
+
 bool BenchPlant::feels_all(const Params<double>& params, const Window& window) const {
   const Params<double> p = in_run(params, of(window.record));
-  return p.supply_line_resistance > 0.0 || detail::seals_deform(p, laws_.friction) ||
-         BenchRates<double>(p, laws_).is_warm();
+  return p.supply_line_resistance > 0.0 || seals_deform(p, laws_.friction) || temperature_is_state(p, laws_.chamber);
 }
 
 }  // namespace estimation

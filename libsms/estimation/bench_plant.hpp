@@ -8,9 +8,11 @@
 // (bench_loop.hpp).
 #pragma once
 
-#include "estimation/bench_rates.hpp"
+#include "estimation/hidden_inputs.hpp"
 #include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
+#include "sms/integrate_stiff.hpp"
+#include "sms/plant_sensors.hpp"
 
 namespace sms {
 namespace estimation {
@@ -25,6 +27,7 @@ struct BenchRecord {
   Eigen::VectorXd supply_pressure;                 // empty: not measured
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
   Eigen::VectorXd setpoint = {};                   // m; of a loop that is simulated
+  Hold hold = Hold::linear;                        // of the command, where that is the record's
 };
 
 // Standard deviation of one sample.
@@ -58,10 +61,8 @@ class BenchPlant {
   // Whether reservoir, seals or temperatures begin with something of their own.
   bool feels_all(const Params<double>& params, const Window& window) const;
 
-  // Writes the whitened errors of one sample and returns where the next begin.
-  template <typename S>
-  S* readings(const Params<S>& p, const BenchRecord& record, int sample, const ActuatorSensors<S>& sensors,
-              const BenchState<S>& state, const BenchState<S>& rate, S* out) const;
+  // The whole state where a window begins, in the order of BenchState.
+  Eigen::VectorXd state(const Params<double>& params, const Window& window, const Eigen::VectorXd& start) const;
 
   // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
   template <typename S>
@@ -78,10 +79,19 @@ class BenchPlant {
     return detail::moved_last(extension, sample, 6.0 * noise_.extension);
   }
 
-  // As simulate(), in `steps` steps a sample; drive_of(BenchRates, h) makes what drives the valve.
+  // As simulate(), in `steps` steps a sample; drive_of(Bench, h) makes what drives the valve.
   template <typename S, typename DriveOf>
   void simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
                        const S* start, S* residual, const S* hidden, int knots) const;
+
+  // The state in which a window begins.
+  template <typename S, typename Drive>
+  BenchState<S> begin(const Bench<S>& bench, const S* start, Drive& drive) const;
+
+  // Writes the whitened errors of one sample and returns where the next begin.
+  template <typename S>
+  S* readings(const BenchRecord& record, int sample, const Bench<S>& bench, const BenchSensors<S>& sensors,
+              const BenchState<S>& state, const BenchState<S>& rate, const BenchTerms<S>& t, S* out) const;
 
   template <typename S>
   static Params<S> in_run(Params<S> params, const BenchRecord& record) {
@@ -99,22 +109,21 @@ class BenchPlant {
 };
 
 template <typename S>
-S* BenchPlant::readings(const Params<S>& p, const BenchRecord& record, int sample, const ActuatorSensors<S>& sensors,
-                        const BenchState<S>& state, const BenchState<S>& rate, S* out) const {
-  const auto error = [sample](const S& predicted, const Eigen::VectorXd& measured, int samples, double noise) {
-    return detail::reading_error(predicted, measured, sample + samples, noise);
-  };
-  S rest;
-  const int late = detail::whole_samples(record.step, p.clock_skew_extension, &rest);
-  *out++ = error(sensors.extension_reading(p, state, rest), record.extension, late, noise_.extension);
-  const int late_p = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-  *out++ = error(sensors.lower_reading(p, state, rate, rest), record.pressure_lower, late_p, noise_.pressure_lower);
-  *out++ = error(sensors.upper_reading(p, state, rate, rest), record.pressure_upper, late_p, noise_.pressure_upper);
-  if (record.supply_pressure.size() > 0) {
-    *out++ = error(
-        sensor_reading(state.actuator.supply_pressure, p.sensor_gain_supply_pressure, p.sensor_offset_supply_pressure),
-        record.supply_pressure, 0, noise_.supply_pressure);
-  }
+S* BenchPlant::readings(const BenchRecord& record, int sample, const Bench<S>& bench, const BenchSensors<S>& sensors,
+                        const BenchState<S>& state, const BenchState<S>& rate, const BenchTerms<S>& t, S* out) const {
+  // In the order of signals.def.
+  const Eigen::VectorXd* const measured[] = {&record.extension, &record.pressure_lower, &record.pressure_upper,
+                                             &record.supply_pressure};
+  const double noise[] = {noise_.extension, noise_.pressure_lower, noise_.pressure_upper, noise_.supply_pressure};
+  int k = 0;
+  sensors.each(bench, state, rate, t, [&](const char*, int, const Sensor<S>& sensor, const S& value, const S& slope) {
+    if (measured[k]->size() > 0) {
+      int late;
+      const S reading = detail::logged(sensor, value, slope, record.step, &late);
+      *out++ = detail::reading_error(reading, *measured[k], sample + late, noise[k]);
+    }
+    ++k;
+  });
   return out;
 }
 
@@ -123,80 +132,70 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
                           int knots) const {
   const BenchRecord& record = of(window.record);
   const int steps = detail::steps_over(record.step, longest_step_);
-  const auto recorded = [&](const BenchRates<S>& rates, const S& h) {
-    return RecordedCommand<S>(rates.params(), record.command, record.step, window.first, steps, h);
+  const auto recorded = [&](const Bench<S>& bench, const S& h) {
+    return RecordedCommand<S>(bench.params, bench.laws, record.command, record.hold, record.step, window.first, steps,
+                              h);
   };
   simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
+}
+
+template <typename S, typename Drive>
+BenchState<S> BenchPlant::begin(const Bench<S>& bench, const S* start, Drive& drive) const {
+  const Params<S>& p = bench.params;
+  const bool warm = temperature_is_state(p, laws_.chamber);
+  BenchState<S> state = bench_at_rest(bench, start[0], S(0), S(2e5));
+  state.velocity = start[1];
+  state.actuator.lower = {start[2], warm ? S(p.air_temperature + start[6]) : p.air_temperature};
+  state.actuator.upper = {start[3], warm ? S(p.air_temperature + start[7]) : p.air_temperature};
+  state.actuator.supply_pressure = p.supply_line_resistance > S(0) ? start[4] : p.supply_pressure;
+  state.actuator.deflection = start[5];
+  state.actuator.film = state.velocity;
+  drive.begin(state.actuator);
+  return state;
 }
 
 template <typename S, typename DriveOf>
 void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
                                  const S* start, S* residual, const S* hidden, int knots) const {
   const BenchRecord& record = of(window.record);
-  const BenchRates<S> rate_of(in_run(params, record), laws_);
-  const Params<S>& p = rate_of.params();
-  const bool droops = p.supply_line_resistance > S(0);
+  const Bench<S> bench = make_bench(in_run(params, record), laws_);
+  const Params<S>& p = bench.params;
+  const HiddenInputs<S> pushes(hidden, knots, window.samples);
   const S h(record.step / steps);
-  auto drive = drive_of(rate_of, h);
+  auto drive = drive_of(bench, h);
+  BenchState<S> state = begin(bench, start, drive);
 
-  BenchState<S> state = bench_at_rest(rate_of.bench(), start[0], S(0), S(2e5));
-  state.velocity = start[1];
-  const bool warm = rate_of.is_warm();
-  state.actuator.lower = {start[2], warm ? S(p.air_temperature + start[6]) : p.air_temperature};
-  state.actuator.upper = {start[3], warm ? S(p.air_temperature + start[7]) : p.air_temperature};
-  state.actuator.supply_pressure = droops ? start[4] : p.supply_pressure;
-  state.actuator.deflection = start[5];
-  drive.begin(state.actuator);
-
-  BenchTerms<S> t;
-  BenchState<S> k1, k2, moved;
-  // Hidden inputs at `at`, counted in samples from the window's first.
-  const auto push = [&](double at, BenchState<S>& rate) {
-    if (hidden == nullptr) {
-      return;
+  BenchTerms<S> t{};
+  const auto rates = [&](double at, const BenchState<S>& y, BenchState<S>& rate) {
+    if (derivative<S>(bench, y, {drive.at(at), S(0)}, t, rate) != SMS_OK) {
+      rate = BenchState<S>{};  // where it cannot go on it stands still: a search then turns back
+    } else if (pushes) {
+      rate.velocity += pushes.at(0, at) / p.moving_mass;
+      rate.actuator.lower.pressure += pushes.at(1, at) * p.gas_constant * p.air_temperature / t.actuator.lower.volume;
+      rate.actuator.upper.pressure += pushes.at(2, at) * p.gas_constant * p.air_temperature / t.actuator.upper.volume;
     }
-    const auto value = [&](int input) { return detail::hidden_at(hidden + input * knots, knots, window.samples, at); };
-    rate.velocity += value(0) / p.moving_mass;
-    rate.actuator.lower.pressure += value(1) * p.gas_constant * p.air_temperature / t.actuator.lower.volume;
-    rate.actuator.upper.pressure += value(2) * p.gas_constant * p.air_temperature / t.actuator.upper.volume;
   };
-  const auto rates = [&](double at, const BenchState<S>& y, const S& film, BenchState<S>& rate) {
-    rate_of(y, drive.at(at), film, t, rate);
-    push(at, rate);
-  };
-  const bool film_is_late = !is_absent(p.friction_lag);
-  S film = state.velocity;
-  const auto film_at = [&](const S& speed) {
-    return film_is_late ? detail::lagging(film, state.velocity, speed, p.friction_lag, h) : speed;
-  };
-  ActuatorSensors<S> sensors(p, h, is_absent(p.backlash) ? 0.0 : moved_last(record.extension, window.first));
-  const S g = S(detail::kStiffShare) * h;
-  const auto x = vector_of(state);
+  BenchSensors<S> sensors(bench, h, is_absent(p.backlash) ? 0.0 : moved_last(record.extension, window.first));
+  const S g = stiff_share<S>() * h;
+  BenchState<S> rate;
   for (int k = 0;; ++k) {
-    rates(k, state, film, k1);
-    sensors.follow(p, state, k1, t.actuator.force - t.balance.friction);
-    drive.step_begins(k, 0, state, sensors, k1);
-    residual = readings<S>(p, record, window.first + k, sensors, state, k1, residual);
-    residual = drive.readings(window.first + k, residual);
-    if (k == window.samples - 1) {
-      return;
-    }
     for (int i = 0; i < steps; ++i) {
-      if (i > 0) {
-        rates(k + double(i) / steps, state, film, k1);
-        sensors.follow(p, state, k1, t.actuator.force - t.balance.friction);
-        drive.step_begins(k, i, state, sensors, k1);
+      rates(k + double(i) / steps, state, rate);
+      sensors.follow(bench, state, rate, t);
+      drive.step_begins(k, i, state, sensors.leg(), rate);
+      if (i == 0) {
+        residual = readings<S>(record, window.first + k, bench, sensors, state, rate, t, residual);
+        residual = drive.readings(window.first + k, residual);
+        if (k == window.samples - 1) {
+          return;
+        }
       }
-      const detail::ActuatorStiffness<S> stiff =
-          detail::actuator_stiffness(p, laws_.friction, p.moving_mass, t.actuator);
-      detail::solve_stiff(stiff, g, k1);
-      vector_of(moved) = x + h * vector_of(k1);
-      rates(k + double(i + 1) / steps, moved, film_at(moved.velocity), k2);
-      vector_of(k2) -= S(2) * vector_of(k1);
-      detail::solve_stiff(stiff, g, k2);
-      const S speed = state.velocity + (S(0.5) * h) * (S(3) * k1.velocity + k2.velocity);
-      film = film_at(speed);
-      vector_of(state) += (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
+      const auto slopes = stiffness(bench, state, t);
+      const auto end_rate = [&](const BenchState<S>& moved, BenchState<S>& there) {
+        rates(k + double(i + 1) / steps, moved, there);
+        return SMS_OK;
+      };
+      stiff_step(end_rate, [&](BenchState<S>& k1) { solve_stiff(slopes, g, k1); }, h, rate, state);
     }
   }
 }

@@ -1,8 +1,8 @@
 // What drives the valves of three legs: of each leg what drives one (recorded_command.hpp, actuator_controller.hpp).
 #pragma once
 
+#include "estimation/path_sensors.hpp"
 #include "estimation/platform_rates.hpp"
-#include "estimation/platform_sensors.hpp"
 
 namespace sms {
 namespace estimation {
@@ -20,7 +20,7 @@ struct LegDrives {
   // V, `at` counted in samples from the window's first.
   Vec3<S> at(double at) const { return {leg[0].at(at), leg[1].at(at), leg[2].at(at)}; }
   // Step i after sample k of the window begins at this state, which the sensors see.
-  void step_begins(int k, int i, const Pistons<S>& y, const PlatformSensors<S>& sensors, Pistons<S>& rate) {
+  void step_begins(int k, int i, const Pistons<S>& y, const PathSensors<S>& sensors, Pistons<S>& rate) {
     for (int j = 0; j < 3; ++j) {
       leg[j].step_begins(k, i, y.leg[j], sensors.leg[j], rate.leg[j]);
     }

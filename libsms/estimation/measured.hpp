@@ -22,13 +22,6 @@ struct MeasuredSignal {
   Eigen::VectorXd second;
 };
 
-// What the sensor of a signal says, and by how much it and its logger are late.
-template <typename S>
-struct SensorErrors {
-  S gain, offset;
-  S late;  // s
-};
-
 template <typename S>
 struct Truth {
   S value, rate, second;
@@ -37,13 +30,12 @@ struct Truth {
 // What was there at a sample, in the place of what was read then and, by a late sensor, after.
 template <typename S>
 Truth<S> truth_at(const MeasuredSignal& signal, int sample, double step, const SensorErrors<S>& sensor) {
-  const S place = S(sample) + sensor.late / S(step);
+  const S place = S(sample) + (sensor.clock + sensor.lag) / S(step);
   const auto read = [&place](const Eigen::VectorXd& values) {
     return values.size() > 0 ? detail::command_at<S>(values, place) : S(0);
   };
   const S scale = S(1) + sensor.gain;
-  return {sensor_truth<S>(read(signal.value), sensor.gain, sensor.offset), read(signal.rate) / scale,
-          read(signal.second) / scale};
+  return {sensor.truth(read(signal.value)), read(signal.rate) / scale, read(signal.second) / scale};
 }
 
 // The reservoir a sample later, as an equation of its own; it is the set point where there is no line (vessel.hpp).

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "estimation/actuator_step.hpp"
 #include "estimation/measured.hpp"
+#include "sms/integrate_stiff.hpp"
 
 namespace sms {
 namespace estimation {
@@ -23,19 +23,14 @@ struct ActuatorTruth {
 
 template <typename S>
 ActuatorTruth<S> actuator_truth(const Params<S>& p, const ActuatorSignals& signals, int sample, double step) {
-  const SensorErrors<S> extension{p.sensor_gain_extension, p.sensor_offset_extension,
-                                  p.clock_skew_extension + p.sensor_lag_extension};
-  const SensorErrors<S> lower{p.sensor_gain_chamber_pressure_lower, p.sensor_offset_chamber_pressure_lower,
-                              p.clock_skew_chamber_pressure + p.sensor_lag_chamber_pressure_lower};
-  const SensorErrors<S> upper{p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper,
-                              p.clock_skew_chamber_pressure + p.sensor_lag_chamber_pressure_upper};
-  return {truth_at(signals.extension, sample, step, extension), truth_at(signals.pressure_lower, sample, step, lower),
-          truth_at(signals.pressure_upper, sample, step, upper)};
+  return {truth_at(signals.extension, sample, step, extension_sensor(p)),
+          truth_at(signals.pressure_lower, sample, step, chamber_pressure_lower_sensor(p)),
+          truth_at(signals.pressure_upper, sample, step, chamber_pressure_upper_sensor(p))};
 }
 
 template <typename S>
 Truth<S> supply_truth(const Params<S>& p, const MeasuredSignal& signal, int sample, double step) {
-  return truth_at<S>(signal, sample, step, {p.sensor_gain_supply_pressure, p.sensor_offset_supply_pressure, S(0)});
+  return truth_at(signal, sample, step, supply_pressure_sensor(p));
 }
 
 // What was measured, put in its place.
@@ -47,31 +42,42 @@ void hold_to(const ActuatorTruth<S>& truth, BenchState<S>& state) {
   state.actuator.upper.pressure = truth.upper.value;
 }
 
+// Where nothing is known of what no sensor sees: the film has the speed of the piston.
+template <typename S>
+BenchState<S> measured_begin(const Params<S>& p, const ActuatorTruth<S>& truth) {
+  BenchState<S> state{S(0), S(0), actuator_at_rest<S>(p, S(0), S(0))};
+  hold_to(truth, state);
+  state.actuator.film = state.velocity;
+  return state;
+}
+
 // The spool at a sample: it follows the command alone.
 template <typename S>
 Lag<S> spool_at_sample(const Params<S>& p, const Eigen::VectorXd& command, int sample, double step) {
   constexpr double kLongest = 1e-3;  // s
   const int parts = std::max(1, static_cast<int>(std::ceil(step / kLongest - 1e-9)));
-  return detail::spool_at<S>(p, command, sample, parts, S(step / parts), p.command_delay / S(step));
+  return RecordedVoltage<S>(command, Hold::linear, parts, p.command_delay / S(step)).spool(p, sample, S(step / parts));
 }
 
-// What no sensor sees but spool and reservoir, a sample later. `rate` is used up.
+// What no sensor sees but spool, film and reservoir, a sample later. `rate` is used up.
 template <typename S>
 void follow(const Params<S>& p, FrictionLaw law, const S& mass, double step, const ActuatorTerms<S>& t,
             BenchState<S>& rate, ActuatorState<S>& state) {
-  detail::solve_stiff<S>(detail::actuator_stiffness<S>(p, law, mass, t), S(step), rate);
+  solve_stiff<S>(actuator_stiffness<S>(p, law, mass, t), S(step), rate);
   state.deflection += S(step) * rate.actuator.deflection;
   state.lower.temperature += S(step) * rate.actuator.lower.temperature;
   state.upper.temperature += S(step) * rate.actuator.upper.temperature;
 }
 
-// The lubricant's film, which is late where friction_lag says so.
+// The lubricant's film a sample later, exactly for a speed that runs straight.
 template <typename S>
-S film_after(const Params<S>& p, const S& film, const ActuatorTruth<S>& now, const ActuatorTruth<S>& next,
-             double step) {
-  return is_absent(p.friction_lag)
-             ? next.extension.rate
-             : detail::lagging<S>(film, now.extension.rate, next.extension.rate, p.friction_lag, S(step));
+void follow_film(const Params<S>& p, const ActuatorTruth<S>& now, const ActuatorTruth<S>& next, double step,
+                 ActuatorState<S>& state) {
+  if (!is_absent(p.friction_lag) && film_is_state(p)) {
+    const S corner = S(1) / p.friction_lag;
+    state.film = low_pass_ramp_step<S>(corner, S(step), low_pass_weight<S>(corner, S(step)), state.film,
+                                       now.extension.rate, next.extension.rate);
+  }
 }
 
 // kg/s into a chamber that would make up for a rate of its pressure.

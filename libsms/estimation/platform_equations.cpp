@@ -62,18 +62,13 @@ void PlatformEquations::errors(const LegParams<S>& params, S* out) const {
   const MeasuredMotion motion = motion_of(truths);
   const MeasuredPath<double> here = measured_path(plain_params(common), masses_, motion);
   const MeasuredPath<S>& path = path_with_slopes(here, common, masses_, motion);
-  const SensorErrors<S> of_roll{common.sensor_gain_roll, common.sensor_offset_roll,
-                                common.clock_skew_attitude + common.sensor_lag_roll};
-  const SensorErrors<S> of_pitch{common.sensor_gain_pitch, common.sensor_offset_pitch,
-                                 common.clock_skew_attitude + common.sensor_lag_pitch};
-
-  Pistons<S> state, rate;
-  PistonTerms<S> t;
+  Pistons<S> state, rate{};
+  PistonTerms<S> t{};
+  t.friction.setZero();
   t.along.setZero();
-  Vec3<S> film, reservoir;
+  Vec3<S> reservoir;
   for (int i = 0; i < 3; ++i) {
-    state.leg[i].actuator = actuator_at_rest<S>(machines.leg[i], S(0), S(0));
-    film(i) = truths[0][static_cast<std::size_t>(i)].extension.rate;
+    state.leg[i] = measured_begin(machines.leg[i], truths[0][static_cast<std::size_t>(i)]);
     reservoir(i) = machines.leg[i].supply_pressure;
   }
   for (int k = 0;; ++k) {
@@ -93,7 +88,7 @@ void PlatformEquations::errors(const LegParams<S>& params, S* out) const {
       measured(i) = truth.extension.second;
       aside(i) = truth.extension.value - place.extension(i);
     }
-    piston_rates<S>(machines, laws_, place, path.leaning, state, command, film, nullptr, t, rate);
+    piston_rates<S>(machines, laws_, place, path.leaning, state, command, nullptr, t, rate);
 
     const Vec3<S> force =
         place.mass * (Vec3<S>(rate.leg[0].velocity, rate.leg[1].velocity, rate.leg[2].velocity) - measured);
@@ -113,8 +108,8 @@ void PlatformEquations::errors(const LegParams<S>& params, S* out) const {
     }
     if (reads_attitude()) {
       const Vec3<S> q = place.q + place.to_pose * aside;
-      *out++ = q(0) - truth_at(signals_.roll, k, step, of_roll).value;
-      *out++ = q(1) - truth_at(signals_.pitch, k, step, of_pitch).value;
+      *out++ = q(0) - truth_at(signals_.roll, k, step, roll_sensor(common)).value;
+      *out++ = q(1) - truth_at(signals_.pitch, k, step, pitch_sensor(common)).value;
     }
     if (k == samples() - 1) {
       return;
@@ -122,7 +117,7 @@ void PlatformEquations::errors(const LegParams<S>& params, S* out) const {
     for (int i = 0; i < 3; ++i) {
       const Params<S>& p = machines.leg[i];
       const std::size_t leg = static_cast<std::size_t>(i);
-      film(i) = film_after<S>(p, film(i), now[leg], truths[static_cast<std::size_t>(k + 1)][leg], step);
+      follow_film(p, now[leg], truths[static_cast<std::size_t>(k + 1)][leg], step, state.leg[i].actuator);
       reservoir(i) = reservoir_after<S>(p, reservoir(i), t.actuator[i].flow.drawn, step);
       follow<S>(p, laws_.friction, S(place.mass(i, i)), step, t.actuator[i], rate.leg[i], state.leg[i].actuator);
     }

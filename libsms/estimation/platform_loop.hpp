@@ -37,9 +37,10 @@ class PlatformLoopPlant : public PlatformPlant {
     const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
     const auto controlled = [&](const LegMachines<S>& machines, const S& h) {
       const auto of_leg = [&](int i) {
-        const S* const at_output = hidden == nullptr ? nullptr : hidden + (PlatformPlant::kHidden + i) * knots;
+        const HiddenInputs<S> at_output =
+            HiddenInputs<S>(hidden, knots, window.samples).from(PlatformPlant::kHidden + i);
         return SimulatedController<S>(machines.leg[i], laws(), control_record(window.record, i), window, law_, grid, h,
-                                      start[PlatformPlant::kStart + i], at_output, knots, command_noise_(i));
+                                      start[PlatformPlant::kStart + i], at_output, command_noise_(i));
       };
       return LegDrives<S, SimulatedController<S>>{{of_leg(0), of_leg(1), of_leg(2)}};
     };

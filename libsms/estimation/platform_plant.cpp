@@ -96,7 +96,7 @@ bool PlatformPlant::feels_all(const LegParams<double>& params, const Window& win
   const LegMachines<double> machines = machines_of(params, of(window.record).conditions);
   bool all = false;
   for (const Params<double>& p : machines.leg) {
-    all = all || p.supply_line_resistance > 0.0 || detail::seals_deform(p, laws_.friction);
+    all = all || p.supply_line_resistance > 0.0 || seals_deform(p, laws_.friction);
   }
   return all;
 }
@@ -109,13 +109,12 @@ MeasuredMotion PlatformPlant::motion(const Params<double> (&leg)[3], const Windo
   out.rate.resize(out.extension.size());
   for (int i = 0; i < 3; ++i) {
     const Params<double>& p = leg[i];
-    const int late =
-        static_cast<int>(std::lround((p.clock_skew_extension + p.sensor_lag_extension) / step(window.record)));
+    const SensorErrors<double> sensor = extension_sensor(p);
+    const int late = static_cast<int>(std::lround((sensor.clock + sensor.lag) / step(window.record)));
     for (int k = 0; k < window.samples; ++k) {
       const std::size_t at = static_cast<std::size_t>(std::min(std::max(window.first + k + late, 0), last));
-      out.extension[static_cast<std::size_t>(k)](i) =
-          sensor_truth(all.extension[at](i), p.sensor_gain_extension, p.sensor_offset_extension);
-      out.rate[static_cast<std::size_t>(k)](i) = all.rate[at](i) / (1.0 + p.sensor_gain_extension);
+      out.extension[static_cast<std::size_t>(k)](i) = sensor.truth(all.extension[at](i));
+      out.rate[static_cast<std::size_t>(k)](i) = all.rate[at](i) / (1.0 + sensor.gain);
     }
   }
   return out;

@@ -16,9 +16,11 @@
 #include <utility>
 #include <vector>
 
+#include "estimation/hidden_inputs.hpp"
 #include "estimation/leg_drives.hpp"
 #include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
+#include "sms/integrate_stiff.hpp"
 
 namespace sms {
 namespace estimation {
@@ -38,6 +40,7 @@ struct PlatformRecord {
   Eigen::VectorXd pitch;
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
   LegSignals setpoint = {};                        // m; of a loop that is simulated
+  Hold hold = Hold::linear;                        // of the commands, where those are the record's
 };
 
 // Standard deviation of one sample.
@@ -95,9 +98,7 @@ class PlatformPlant {
   MeasuredMotion motion(const Params<double> (&leg)[3], const Window& window) const;
 
   template <typename S>
-  S* readings(const LegMachines<S>& machines, const PlatformRecord& record, int sample,
-              const PlatformSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state,
-              const Pistons<S>& rate, S* out) const;
+  S* readings(const PlatformRecord& record, int sample, const PathSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state, const Pistons<S>& rate, S* out) const;
 
   std::vector<PlatformRecord> records_;
   std::vector<MeasuredMotion> measured_;  // one a record, smoothed
@@ -110,45 +111,35 @@ class PlatformPlant {
 };
 
 template <typename S>
-S* PlatformPlant::readings(const LegMachines<S>& machines, const PlatformRecord& record, int sample,
-                           const PlatformSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state,
+S* PlatformPlant::readings(const PlatformRecord& record, int sample, const PathSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state,
                            const Pistons<S>& rate, S* out) const {
-  const auto error = [sample](const S& predicted, const auto& measured, int samples, double noise) {
-    return detail::reading_error(predicted, measured, sample + samples, noise);
+  const auto error = [&](const Sensor<S>& sensor, const S& value, const S& slope, const auto& measured, double noise) {
+    int late;
+    const S reading = detail::logged(sensor, value, slope, record.step, &late);
+    return detail::reading_error(reading, measured, sample + late, noise);
   };
-  S rest;
+  // Signal by signal, in the order of signals.def; of each leg by leg.
+  const LegSignals* const measured[] = {&record.extension, &record.pressure_lower, &record.pressure_upper};
+  const Vec3<double>* const noise[] = {&noise_.extension, &noise_.pressure_lower, &noise_.pressure_upper};
   for (int i = 0; i < 3; ++i) {
-    const Params<S>& p = machines.leg[i];
-    const int late = detail::whole_samples(record.step, p.clock_skew_extension, &rest);
-    *out++ = error(sensors.leg[i].extension_reading(p, state.leg[i], rest),
-                   record.extension[static_cast<std::size_t>(i)], late, noise_.extension(i));
+    int k = 0;
+    sensors.leg[i].each(seen(state, rate, i), i,
+                        [&](const char*, int, const Sensor<S>& sensor, const S& value, const S& slope) {
+                          const Eigen::VectorXd& of_leg = (*measured[k])[static_cast<std::size_t>(i)];
+                          out[3 * k + i] = error(sensor, value, slope, of_leg, (*noise[k])(i));
+                          ++k;
+                        });
   }
-  for (int i = 0; i < 3; ++i) {
-    const Params<S>& p = machines.leg[i];
-    const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-    *out++ = error(sensors.leg[i].lower_reading(p, state.leg[i], rate.leg[i], rest),
-                   record.pressure_lower[static_cast<std::size_t>(i)], late, noise_.pressure_lower(i));
-  }
-  for (int i = 0; i < 3; ++i) {
-    const Params<S>& p = machines.leg[i];
-    const int late = detail::whole_samples(record.step, p.clock_skew_chamber_pressure, &rest);
-    *out++ = error(sensors.leg[i].upper_reading(p, state.leg[i], rate.leg[i], rest),
-                   record.pressure_upper[static_cast<std::size_t>(i)], late, noise_.pressure_upper(i));
-  }
-  const Params<S>& p = machines.common;
+  out += 9;
   if (record.supply_pressure.size() > 0) {
-    *out++ = error(sensor_reading(state.leg[0].actuator.supply_pressure, p.sensor_gain_supply_pressure,
-                                  p.sensor_offset_supply_pressure),
-                   record.supply_pressure, 0, noise_.supply_pressure);
+    const S& pressure = state.leg[0].actuator.supply_pressure;
+    *out++ = error(sensors.supply, pressure, rate.leg[0].actuator.supply_pressure, record.supply_pressure,
+                   noise_.supply_pressure);
   }
   if (record.roll.size() > 0) {
     const PoseSeen<S> q = pose_seen(place, state);
-    const int late = detail::whole_samples(record.step, p.clock_skew_attitude, &rest);
-    const S roll = sensors.roll.at(q.pose(0), q.rate(0), rest), pitch = sensors.pitch.at(q.pose(1), q.rate(1), rest);
-    *out++ =
-        error(sensor_reading(roll, p.sensor_gain_roll, p.sensor_offset_roll), record.roll, late, noise_.attitude(0));
-    *out++ = error(sensor_reading(pitch, p.sensor_gain_pitch, p.sensor_offset_pitch), record.pitch, late,
-                   noise_.attitude(1));
+    *out++ = error(sensors.roll, q.pose(0), q.rate(0), record.roll, noise_.attitude(0));
+    *out++ = error(sensors.pitch, q.pose(1), q.rate(1), record.pitch, noise_.attitude(1));
   }
   return out;
 }
@@ -160,8 +151,8 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
   const int steps = detail::steps_over(record.step, longest_step_);
   const auto recorded = [&](const LegMachines<S>& machines, const S& h) {
     const auto of_leg = [&](int i) {
-      return RecordedCommand<S>(machines.leg[i], record.command[static_cast<std::size_t>(i)], record.step, window.first,
-                                steps, h);
+      return RecordedCommand<S>(machines.leg[i], laws_, record.command[static_cast<std::size_t>(i)], record.hold,
+                                record.step, window.first, steps, h);
     };
     return LegDrives<S, RecordedCommand<S>>{{of_leg(0), of_leg(1), of_leg(2)}};
   };
@@ -181,7 +172,8 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
                                 plain_params(machines.common), masses_, measured);
   const MeasuredPath<S>& path = path_with_slopes(*known, machines.common, masses_, measured);
   const S h(record.step / steps);
-  const S g = S(detail::kStiffShare) * h;
+  const S g = stiff_share<S>() * h;
+  const HiddenInputs<S> pushes(hidden, knots, window.samples);
 
   Pistons<S> state;
   for (int i = 0; i < 3; ++i) {
@@ -192,34 +184,21 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
       leg.actuator.supply_pressure = start[12 + i];
     }
     leg.actuator.deflection = start[15 + i];
+    leg.actuator.film = leg.velocity;
   }
   auto drives = drives_of(machines, h);
   drives.begin(state);
 
-  PistonTerms<S> t;
+  PistonTerms<S> t{};
   t.along.setZero();
-  Pistons<S> k1, k2, moved;
-  Vec3<S> film = speeds_of(state);
-  // The lubricant's films when the pistons have come to `then`, a step after `state`.
-  const auto films_at = [&](const Vec3<S>& then) {
-    Vec3<S> late_films = then;
-    for (int i = 0; i < 3; ++i) {
-      const S& lag = machines.leg[i].friction_lag;
-      if (!is_absent(lag)) {
-        late_films(i) = detail::lagging<S>(film(i), state.leg[i].velocity, then(i), lag, h);
-      }
-    }
-    return late_films;
-  };
-  const auto rates_at = [&](int sample, double part, const Pistons<S>& y, const Vec3<S>& films, Pistons<S>& rate) {
+  t.friction.setZero();
+  const auto rates_at = [&](int sample, double part, const Pistons<S>& y, Pistons<S>& rate) {
     S push[kHidden];
-    if (hidden != nullptr) {
-      for (int input = 0; input < kHidden; ++input) {
-        push[input] = detail::hidden_at(hidden + input * knots, knots, window.samples, sample + part);
-      }
+    for (int input = 0; pushes && input < kHidden; ++input) {
+      push[input] = pushes.at(input, sample + part);
     }
     piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y,
-                    drives.at(sample + part), films, hidden != nullptr ? push : nullptr, t, rate);
+                    drives.at(sample + part), pushes ? push : nullptr, t, rate);
   };
   Vec3<double> went = Vec3<double>::Zero();
   for (int i = 0; i < 3; ++i) {
@@ -228,40 +207,38 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
           detail::moved_last(record.extension[static_cast<std::size_t>(i)], window.first, 6.0 * noise_.extension(i));
     }
   }
-  PlatformSensors<S> sensors(machines, h, went);
-  const auto x = vector_of(state);
+  PathSensors<S> sensors(machines, h, went);
+  Pistons<S> rate;
   for (int k = 0;; ++k) {
-    rates_at(k, 0.0, state, film, k1);
-    const PathPoint<S>& place = path.points[static_cast<std::size_t>(k)];
-    sensors.follow(machines, place, state, k1, t);
-    drives.step_begins(k, 0, state, sensors, k1);
-    residual = readings<S>(machines, record, window.first + k, sensors, place, state, k1, residual);
-    residual = drives.readings(window.first + k, residual);
-    if (k == window.samples - 1) {
-      return;
-    }
     for (int step = 0; step < steps; ++step) {
       const double begin = double(step) / steps;
-      if (step > 0) {
-        rates_at(k, begin, state, film, k1);
-        sensors.follow(machines, place_between<S>(path.points, k, begin), state, k1, t);
-        drives.step_begins(k, step, state, sensors, k1);
+      const PathPoint<S> place = place_between<S>(path.points, k, begin);
+      rates_at(k, begin, state, rate);
+      sensors.follow(machines, place, state, rate, t);
+      drives.step_begins(k, step, state, sensors, rate);
+      if (step == 0) {
+        residual = readings<S>(record, window.first + k, sensors, place, state, rate, residual);
+        residual = drives.readings(window.first + k, residual);
+        if (k == window.samples - 1) {
+          return;
+        }
       }
-      detail::ActuatorStiffness<S> stiff[3];
+      ActuatorStiffness<S> slopes[3];
       for (int i = 0; i < 3; ++i) {
-        stiff[i] = detail::actuator_stiffness<S>(machines.leg[i], laws_.friction, S(place.mass(i, i)), t.actuator[i]);
-        detail::solve_stiff(stiff[i], g, k1.leg[i]);
+        slopes[i] = actuator_stiffness<S>(machines.leg[i], laws_.friction, S(path.points[static_cast<std::size_t>(k)].mass(i, i)),
+                                           t.actuator[i]);
       }
-      vector_of(moved) = x + h * vector_of(k1);
-      const bool last = step + 1 == steps;
-      rates_at(last ? k + 1 : k, last ? 0.0 : double(step + 1) / steps, moved, films_at(speeds_of(moved)), k2);
-      vector_of(k2) -= S(2) * vector_of(k1);
-      for (int i = 0; i < 3; ++i) {
-        detail::solve_stiff(stiff[i], g, k2.leg[i]);
-      }
-      vector_of(moved) = x + (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
-      film = films_at(speeds_of(moved));
-      state = moved;
+      const auto solve = [&](Pistons<S>& y) {
+        for (int i = 0; i < 3; ++i) {
+          solve_stiff(slopes[i], g, y.leg[i]);
+        }
+      };
+      const auto end_rate = [&](const Pistons<S>& moved, Pistons<S>& there) {
+        const bool last = step + 1 == steps;
+        rates_at(last ? k + 1 : k, last ? 0.0 : double(step + 1) / steps, moved, there);
+        return SMS_OK;
+      };
+      stiff_step(end_rate, solve, h, rate, state);
     }
   }
 }

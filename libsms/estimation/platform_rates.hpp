@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/actuator_step.hpp"
 #include "estimation/leg_params.hpp"
 #include "estimation/measured_path.hpp"
+#include "sms/bench.hpp"
 
 namespace sms {
 namespace estimation {
@@ -17,11 +17,6 @@ struct Pistons {
   using Scalar = S;
   BenchState<S> leg[3];
 };
-
-template <typename S>
-Vec3<S> speeds_of(const Pistons<S>& pistons) {
-  return {pistons.leg[0].velocity, pistons.leg[1].velocity, pistons.leg[2].velocity};
-}
 
 // Parameters of one run: of the mechanism, and of each leg.
 template <typename S>
@@ -43,7 +38,7 @@ template <typename S>
 struct PistonTerms {
   ActuatorTerms<S> actuator[3];
   Vec3<S> friction;
-  Vec3<S> along;  // accelerations of the pistons; the next balance begins there
+  Vec3<S> along;  // accelerations of the pistons by the law of their friction; the next balance begins there
 };
 
 // The path between two samples.
@@ -60,10 +55,11 @@ PathPoint<S> place_between(const std::vector<PathPoint<S>>& path, int sample, do
 // push: hidden inputs, three forces, N, flows into three lower and three upper chambers, kg/s; nullptr for none.
 template <typename S>
 void piston_rates(const LegMachines<S>& machines, const ActuatorLaws& laws, const PathPoint<S>& place,
-                  const Mat3<S>& leaning, const Pistons<S>& state, const Vec3<S>& command, const Vec3<S>& film,
-                  const S* push, PistonTerms<S>& t, Pistons<S>& rate) {
+                  const Mat3<S>& leaning, const Pistons<S>& state, const Vec3<S>& command, const S* push,
+                  PistonTerms<S>& t, Pistons<S>& rate) {
   Vec3<S> drive = place.load, aside, speed;
   Piston<S> piston[3];
+  SealState<S> seals[3];
   for (int i = 0; i < 3; ++i) {
     const Params<S>& p = machines.leg[i];
     const BenchState<S>& leg = state.leg[i];
@@ -78,41 +74,24 @@ void piston_rates(const LegMachines<S>& machines, const ActuatorLaws& laws, cons
     }
     drive(i) += a.force;
     piston[i] = a.piston;
+    seals[i] = seals_of(leg.actuator);
     aside(i) = leg.extension - place.extension(i);
     speed(i) = leg.velocity;
     rate.leg[i].extension = leg.velocity;
-    rate.leg[i].actuator.deflection = S(0);
   }
   drive += leaning * aside;
   if (!is_absent(machines.common.panhard_friction)) {
     drive -= machines.common.panhard_friction * (place.drag * speed);
   }
-  if (depends_on_acceleration(laws.friction)) {
-    coupled_accelerations<S>(machines.leg, laws.friction, piston, place.mass, drive, t.along);
-    t.friction = drive - place.mass * t.along;
-  } else {
-    for (int i = 0; i < 3; ++i) {
-      const ForceBalance<S> alone =
-          force_balance<S>(machines.leg[i], laws.friction, piston[i], state.leg[i].actuator.deflection, S(1), S(0));
-      t.friction(i) = alone.friction;
-      rate.leg[i].actuator.deflection = alone.deflection_rate;
-    }
-    t.along = solution<S>(place.mass, drive - t.friction);
-  }
-  Vec3<S> deviation;
-  bool deviates = false;
-  for (int i = 0; i < 3; ++i) {
-    const Params<S>& p = machines.leg[i];
-    deviates = deviates || !is_absent(p.presliding_share) || !is_absent(p.friction_lag);
-    deviation(i) = detail::seal_deviation<S>(p, piston[i], t.friction(i), state.leg[i].actuator.deflection, film(i),
-                                             &rate.leg[i].actuator.deflection);
-  }
-  Vec3<S> acceleration = t.along;
-  if (deviates) {
-    acceleration -= solution<S>(place.mass, deviation);
+  ForceBalance<S> balance[3];
+  if (balance_pistons(machines.leg, laws.friction, piston, seals, place.mass, drive, t.along, balance) != SMS_OK) {
+    rate = Pistons<S>{};  // where it cannot go on it stands still: a search then turns back
+    return;
   }
   for (int i = 0; i < 3; ++i) {
-    rate.leg[i].velocity = acceleration(i);
+    t.friction(i) = balance[i].friction;
+    rate.leg[i].velocity = balance[i].acceleration;
+    seal_rates(balance[i], rate.leg[i].actuator);
   }
 }
 

@@ -1,4 +1,4 @@
-// What the plants of shooting.hpp share: recorded signals read at any time, clocks that are late, hidden inputs.
+// What the plants of shooting.hpp share: recorded signals read at any time, readings that are held against them.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,24 +8,23 @@
 #include <stdexcept>
 #include <string>
 
-#include "sms/filter.hpp"
 #include "sms/sensor.hpp"
+#include "sms/valve.hpp"
 
 namespace sms {
 namespace estimation {
+
+// What the valve had between two samples of a recorded command.
+enum class Hold : int {
+  linear,   // straight from one to the next: a signal that was sampled
+  previous  // the last one: what a digital controller holds
+};
+
 namespace detail {
 
 // Steps of an integration over a time, each within longest_step.
 inline int steps_over(double time, double longest_step) {
   return std::max(1, static_cast<int>(std::ceil(time / longest_step - 1e-9)));
-}
-
-// How many whole samples a clock is late, and what is left of it, s.
-template <typename S>
-int whole_samples(double step, const S& late, S* rest) {
-  const int samples = static_cast<int>(std::lround(value_of(late) / step));
-  *rest = late - S(samples * step);
-  return samples;
 }
 
 // The command at a time counted in samples; before the first and after the last it is held.
@@ -43,55 +42,14 @@ S command_at(const Eigen::VectorXd& command, const S& at) {
   return S(command[k]) + (at - S(static_cast<double>(k))) * S(command[k + 1] - command[k]);
 }
 
-// |flow| over pressure difference, kg/(s Pa).
+// A reading of a sensor at its truth, as its logger has it at a sample: late by what is left beside whole samples of its
+// clock; *late are those.
 template <typename S>
-S secant(const S& flow, const S& from, const S& to) {
-  using std::abs;
-  const S difference = abs(from - to);
-  return abs(flow) / (difference > S(100) ? difference : S(100));
+S logged(const Sensor<S>& sensor, const S& value, const S& rate, double step, int* late) {
+  S rest;
+  *late = whole_samples(step, sensor.errors().clock, &rest);
+  return sensor.reading(value, rate, rest);
 }
-
-// A hidden input of a window at `at`, counted in samples from its first: straight lines between `knots` values.
-template <typename S>
-S hidden_at(const S* values, int knots, int samples, double at) {
-  const double place = std::min(at / samples * (knots - 1), knots - 1.001);
-  const int k = static_cast<int>(place);
-  return values[k] + S(place - k) * (values[k + 1] - values[k]);
-}
-
-// A sensor that follows as a first-order lag, stepped exactly for what runs straight. One that is faster than a step, or
-// without a lag, is read as it was that long ago: the limit of the same.
-template <typename S>
-struct FollowingSensor {
-  FollowingSensor(const S& time_constant, const S& step) : lag(time_constant), h(step) {
-    if (value_of(lag) > value_of(h)) {
-      follows = true;
-      weight = low_pass_weight<S>(S(1) / lag, h);
-    }
-  }
-  // The reading, `rest` seconds ago besides.
-  S at(const S& truth, const S& rate, const S& rest = S(0)) const {
-    return follows ? late_reading<S>(reading, (truth - reading) / lag, rest) : late_reading<S>(truth, rate, rest + lag);
-  }
-  void step(const S& from, const S& to) {
-    if (follows) {
-      reading = low_pass_ramp_step<S>(S(1) / lag, h, weight, reading, from, to);
-    }
-  }
-  // The truth a step after the last call; at the first it is taken to have been rising like this for long.
-  void follow(const S& truth, const S& rate) {
-    if (!follows) {
-      return;
-    }
-    reading = begun ? low_pass_ramp_step<S>(S(1) / lag, h, weight, reading, before, truth)
-                    : late_reading<S>(truth, rate, lag);
-    before = truth;
-    begun = true;
-  }
-
-  S lag, h, reading{0}, weight{0}, before{0};
-  bool follows = false, begun = false;
-};
 
 // Predicted less measured over the noise, against the reading `late` samples later: there the late clock has this
 // sample. Beyond the record: nothing.
@@ -136,5 +94,65 @@ inline void check_signal(const std::string& record, const char* name, const Eige
 }
 
 }  // namespace detail
+
+// A recorded command on its way to the valve, `late` samples behind. Times are counted in samples from the record's first.
+//
+// Where the previous value is held, a step of the integration has the mean of what arrives within it: a jump that a delay
+// has put into the middle of a step keeps its size and its time to first order, and the simulation is smooth in the delay.
+template <typename S>
+class RecordedVoltage {
+ public:
+  // In `steps` steps of integration a sample. The command has to last.
+  RecordedVoltage(const Eigen::VectorXd& command, Hold hold, int steps, const S& late)
+      : command_(command), hold_(hold), steps_(steps), late_(late) {}
+
+  bool is_held() const { return hold_ == Hold::previous; }
+
+  // A step begins.
+  void begin_step(double at) {
+    if (is_held()) {
+      mean_ = mean_from(S(at) - late_);
+    }
+  }
+  // V, within that step.
+  S at(double at) const { return is_held() ? mean_ : detail::command_at<S>(command_, S(at) - late_); }
+
+  // The spool at `first`: it follows the command alone, and is run up over the 50 ms before, in steps of h.
+  Lag<S> spool(const Params<S>& p, double first, const S& h) {
+    const int run_up = static_cast<int>(0.05 / value_of(h)) + 1;
+    begin_step(first - double(run_up) / steps_);
+    Lag<S> spool{at(first - double(run_up) / steps_), S(0)};
+    for (int i = -run_up; i < 0; ++i) {
+      const double now = first + double(i) / steps_;
+      begin_step(now);
+      const Lag<S> k1 = spool_rate(p, spool, at(now));
+      const Lag<S> moved{spool.value + h * k1.value, spool.rate + h * k1.rate};
+      const Lag<S> k2 = spool_rate(p, moved, at(now + 1.0 / steps_));
+      spool = {spool.value + S(0.5) * h * (k1.value + k2.value), spool.rate + S(0.5) * h * (k1.rate + k2.rate)};
+    }
+    return spool;
+  }
+
+ private:
+  S held(int sample) const {
+    const Eigen::Index last = command_.size() - 1;
+    return S(command_[std::min<Eigen::Index>(std::max(sample, 0), last)]);
+  }
+  // Mean over the step that begins at `from`. A jump at its very beginning belongs to the step before, so that the slope
+  // against a delay of zero is that towards a longer one.
+  S mean_from(const S& from) const {
+    using std::ceil;
+    const int sample = static_cast<int>(ceil(value_of(from) - 1e-9)) - 1;
+    const S before = (S(sample + 1) - from) * S(steps_);  // steps until the next one arrives
+    return value_of(before) < 1.0 ? S(before * held(sample) + (S(1) - before) * held(sample + 1)) : held(sample);
+  }
+
+  const Eigen::VectorXd& command_;
+  Hold hold_;
+  int steps_;
+  S late_;
+  S mean_{0};
+};
+
 }  // namespace estimation
 }  // namespace sms

@@ -93,6 +93,11 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   int rows() const override { return rows_; }
   bool repeats() const override { return false; }
   const std::vector<Window>& windows() const { return windows_; }
+  const Plant& plant() const { return plant_; }
+  // The initial state of a window that was found last.
+  const Eigen::VectorXd& found(std::size_t window) const {
+    return found_[window].size() > 0 ? found_[window] : windows_[window].start;
+  }
 
   void evaluate(const Machine<double>& params, const std::vector<int>& free, Eigen::VectorXd* residual,
                 RowMatrix* jacobian) const override {

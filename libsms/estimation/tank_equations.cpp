@@ -10,12 +10,12 @@ namespace sms {
 namespace estimation {
 namespace {
 
-// What the thermometer's reading says of the air; it measures against its cold junction.
+// What the thermometer's reading says of its own temperature.
 template <typename S>
 S thermometer_truth(const Params<S>& p, const MeasuredSignal& signal, int sample, double step) {
-  const S reading = truth_at<S>(signal, sample, step, {S(0), S(0), p.clock_skew_tank}).value;
-  return p.air_temperature +
-         sensor_truth<S>(reading - p.air_temperature, p.sensor_gain_tank_temperature, p.sensor_offset_tank_temperature);
+  SensorErrors<S> without_lag = tank_temperature_sensor(p);
+  without_lag.lag = S(0);
+  return truth_at<S>(signal, sample, step, without_lag).value;
 }
 
 }  // namespace
@@ -43,15 +43,15 @@ void TankEquations::errors(Params<S> params, S* out) const {
   const Params<S>& p = tank.params;
   const double step = signals_.step;
   const S late = p.command_delay / S(step);
-  const SensorErrors<S> gauge{p.sensor_gain_tank_pressure, p.sensor_offset_tank_pressure,
-                              p.clock_skew_tank + p.sensor_lag_tank_pressure};
+  const SensorErrors<S> gauge = tank_pressure_sensor(p);
 
   TankState<S> state = tank_at_rest<S>(p, S(0)), rate;
-  TankTerms<S> t;
-  detail::FollowingSensor<S> couple(p.thermocouple_time_constant, S(step));
-  const bool warm = laws_.chamber == ChamberLaw::energy || is_partly_warm(tank);
-  couple.reading = reads_temperature() ? thermometer_truth(p, signals_.temperature, 0, step) : p.air_temperature;
-  state.gas.temperature = warm ? couple.reading : p.air_temperature;
+  TankTerms<S> t{};
+  const SensorErrors<S> by_lag_alone{S(0), S(0), p.thermocouple_time_constant, S(0), S(0)};
+  Sensor<S> thermometer(by_lag_alone, S(step));
+  const S first = reads_temperature() ? thermometer_truth(p, signals_.temperature, 0, step) : p.air_temperature;
+  thermometer.begin(first);
+  state.gas.temperature = temperature_is_state(p, laws_.chamber) ? first : p.air_temperature;
   S reservoir = reads_supply() ? supply_truth(p, signals_.supply_pressure, 0, step).value : p.supply_pressure;
   for (int k = 0;; ++k) {
     const Truth<S> now = truth_at(signals_.pressure, k, step, gauge);
@@ -60,9 +60,10 @@ void TankEquations::errors(Params<S> params, S* out) const {
     state.spool = spool_at_sample(p, signals_.command, k, step);
     derivative(tank, state, {detail::command_at<S>(signals_.command, S(k) - late)}, t, rate);
     *out++ = as_flow<S>(p, t.space, rate.gas.pressure - now.rate);
-    const S seen = tank_air(tank, state.gas).temperature;
+    const S seen = t.air.temperature, warms = seen_temperature_rate(p, laws_.chamber, rate.gas.temperature);
+    thermometer.follow(seen, warms);
     if (reads_temperature()) {
-      *out++ = couple.at(seen, rate.gas.temperature) - thermometer_truth(p, signals_.temperature, k, step);
+      *out++ = thermometer.reading(seen, warms) - thermometer_truth(p, signals_.temperature, k, step);
     }
     reservoir = p.supply_line_resistance > S(0) ? reservoir : p.supply_pressure;
     if (reads_supply()) {
@@ -72,9 +73,8 @@ void TankEquations::errors(Params<S> params, S* out) const {
       return;
     }
     reservoir = reservoir_after<S>(p, reservoir, t.feed, step);
-    const detail::TankStiffness<S> stiff = detail::tank_stiffness(p, state, t);
+    const TankStiffness<S> stiff = stiffness(tank, state, t);
     state.gas.temperature += S(step) * rate.gas.temperature / (S(1) - S(step) * stiff.temperature);
-    couple.step(seen, tank_air(tank, state.gas).temperature);
   }
 }
 

@@ -41,5 +41,16 @@ Eigen::VectorXd TankPlant::guess(int record, int first) const {
   return start;
 }
 
+Eigen::VectorXd TankPlant::state(const Params<double>& params, const Window& window,
+                                 const Eigen::VectorXd& start) const {
+  const TankPlantRecord& record = of(window.record);
+  const Tank<double> tank = tank_of(params, record);
+  const int steps = detail::steps_over(record.step, longest_step_);
+  RecordedVoltage<double> command(record.command, record.hold, steps, tank.params.command_delay / record.step);
+  const TankState<double> state =
+      begin(tank, start.data(), command.spool(tank.params, window.first, record.step / steps));
+  return vector_of(state);
+}
+
 }  // namespace estimation
 }  // namespace sms

@@ -4,18 +4,13 @@
 // A window starts with what is free: pressure and temperature of the air, the reservoir's pressure and the thermocouple.
 // Without heat the temperature is that of the supplied air, and the thermometer sees that. The spool follows the command
 // alone and is run up over the 50 ms before the window.
-//
-// The step is that of actuator_step.hpp (ROS2), with the flow over its pressure difference as the slope of each pressure
-// and the exchange of its air as that of the temperature: a small tank behind an open valve is stiff, and so is a
-// reservoir behind a short line.
 #pragma once
 
-#include "estimation/actuator_step.hpp"
+#include "estimation/hidden_inputs.hpp"
 #include "estimation/recorded.hpp"
 #include "estimation/shooting.hpp"
-#include "sms/integrate.hpp"
-#include "sms/sensor.hpp"
-#include "sms/tank.hpp"
+#include "sms/integrate_stiff.hpp"
+#include "sms/plant_sensors.hpp"
 
 namespace sms {
 namespace estimation {
@@ -28,6 +23,7 @@ struct TankPlantRecord {
   Eigen::VectorXd temperature;                     // empty: not measured
   Eigen::VectorXd supply_pressure;                 // empty: not measured
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
+  Hold hold = Hold::linear;                        // of the command
 };
 
 // Standard deviation of one sample.
@@ -62,6 +58,9 @@ class TankPlant {
   Eigen::VectorXd guess(int record, int first) const;
   bool feels_all(const Params<double>&, const Window&) const { return true; }
 
+  // The whole state where a window begins, in the order of TankState.
+  Eigen::VectorXd state(const Params<double>& params, const Window& window, const Eigen::VectorXd& start) const;
+
   // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
   template <typename S>
   void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
@@ -70,10 +69,16 @@ class TankPlant {
  private:
   const TankPlantRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
 
-  // Writes the whitened errors of one sample, as the sensors have it, and returns where the next begin.
+  // Tank and state where a window begins.
   template <typename S>
-  S* readings(const Params<S>& p, const TankPlantRecord& record, int sample, const TankState<S>& state,
-              const TankState<S>& rate, const S& pressure, const S& temperature, S* out) const;
+  Tank<S> tank_of(const Params<S>& params, const TankPlantRecord& record) const;
+  template <typename S>
+  TankState<S> begin(const Tank<S>& tank, const S* start, const Lag<S>& spool) const;
+
+  // Writes the whitened errors of one sample and returns where the next begin.
+  template <typename S>
+  S* readings(const TankPlantRecord& record, int sample, const Tank<S>& tank, const TankSensors<S>& sensors,
+              const TankState<S>& state, const TankState<S>& rate, const TankTerms<S>& t, S* out) const;
 
   std::vector<TankPlantRecord> records_;
   TankNoise noise_;
@@ -81,127 +86,93 @@ class TankPlant {
   double longest_step_;
 };
 
-namespace detail {
-
-// A of the step.
 template <typename S>
-struct TankStiffness {
-  S pressure;     // d p'/d p
-  S temperature;  // d T'/d T
-  S reservoir;    // d p_R'/d p_R
-};
-
-template <typename S>
-TankStiffness<S> tank_stiffness(const Params<S>& p, const TankState<S>& state, const TankTerms<S>& t) {
-  const S of_air = p.gas_constant * p.air_temperature, stiff_air = p.heat_capacity_ratio * of_air;
-  const S feed = secant<S>(t.feed, state.supply_pressure, t.air.pressure);
-  const S vent = secant<S>(t.vent, t.air.pressure, p.ambient_pressure);
-  const S thin = t.air.pressure > S(1e3) ? t.air.pressure : S(1e3);  // a bad guess may have emptied the tank
-  TankStiffness<S> s;
-  s.pressure = -(stiff_air / t.space.volume * (feed + vent));
-  s.temperature = -(of_air * (t.flow.in + t.flow.out) / (thin * t.space.volume));
-  s.reservoir = p.supply_line_resistance > S(0)
-                    ? S(-(stiff_air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed)))
-                    : S(0);
-  return s;
-}
-
-// k with (I - g A) k = rate
-template <typename S>
-void solve_stiff(const TankStiffness<S>& s, const S& g, TankState<S>& rate) {
-  rate.gas.pressure /= S(1) - g * s.pressure;
-  rate.gas.temperature /= S(1) - g * s.temperature;
-  rate.supply_pressure /= S(1) - g * s.reservoir;
-}
-
-}  // namespace detail
-
-template <typename S>
-S* TankPlant::readings(const Params<S>& p, const TankPlantRecord& record, int sample, const TankState<S>& state,
-                       const TankState<S>& rate, const S& pressure, const S& temperature, S* out) const {
-  S rest;
-  const int late = detail::whole_samples(record.step, p.clock_skew_tank, &rest);
-  const S then = late_reading<S>(pressure, rate.gas.pressure, rest);
-  *out++ = detail::reading_error<S>(sensor_reading(then, p.sensor_gain_tank_pressure, p.sensor_offset_tank_pressure),
-                                    record.pressure, sample + late, noise_.pressure);
-  if (record.temperature.size() > 0) {
-    const S warmer = temperature - p.air_temperature;  // a thermocouple measures against its cold junction
-    const S reading =
-        p.air_temperature + sensor_reading<S>(warmer, p.sensor_gain_tank_temperature, p.sensor_offset_tank_temperature);
-    *out++ = detail::reading_error<S>(reading, record.temperature, sample + late, noise_.temperature);
-  }
-  if (record.supply_pressure.size() > 0) {
-    *out++ = detail::reading_error<S>(
-        sensor_reading(state.supply_pressure, p.sensor_gain_supply_pressure, p.sensor_offset_supply_pressure),
-        record.supply_pressure, sample, noise_.supply_pressure);
-  }
+S* TankPlant::readings(const TankPlantRecord& record, int sample, const Tank<S>& tank, const TankSensors<S>& sensors,
+                       const TankState<S>& state, const TankState<S>& rate, const TankTerms<S>& t, S* out) const {
+  // In the order of TankSensors.
+  const Eigen::VectorXd* const measured[] = {&record.pressure, &record.temperature, &record.supply_pressure};
+  const double noise[] = {noise_.pressure, noise_.temperature, noise_.supply_pressure};
+  int k = 0;
+  sensors.each(tank, state, rate, t, [&](const char*, int, const Sensor<S>& sensor, const S& value, const S& slope) {
+    if (measured[k]->size() > 0) {
+      int late;
+      const S reading = detail::logged(sensor, value, slope, record.step, &late);
+      *out++ = detail::reading_error<S>(reading, *measured[k], sample + late, noise[k]);
+    }
+    ++k;
+  });
   return out;
+}
+
+template <typename S>
+Tank<S> TankPlant::tank_of(const Params<S>& params, const TankPlantRecord& record) const {
+  Tank<S> tank{params, laws_};
+  for (const auto& condition : record.conditions) {
+    param(tank.params, condition.first) += S(condition.second);
+  }
+  return tank;
+}
+
+template <typename S>
+TankState<S> TankPlant::begin(const Tank<S>& tank, const S* start, const Lag<S>& spool) const {
+  const Params<S>& p = tank.params;
+  TankState<S> state = tank_at_rest<S>(p, start[0]);
+  state.gas.temperature = temperature_is_state(p, laws_.chamber) ? start[1] : p.air_temperature;
+  state.supply_pressure = p.supply_line_resistance > S(0) ? start[2] : p.supply_pressure;
+  state.spool = spool;
+  return state;
 }
 
 template <typename S>
 void TankPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
                          int knots) const {
   const TankPlantRecord& record = of(window.record);
-  Tank<S> tank{params, laws_};
-  for (const auto& condition : record.conditions) {
-    param(tank.params, condition.first) += S(condition.second);
-  }
+  Tank<S> tank = tank_of(params, record);
   const Params<S>& p = tank.params;
   const S head = p.supply_pressure;
   const bool droops = p.supply_line_resistance > S(0);
-  const bool warm = laws_.chamber == ChamberLaw::energy || !is_absent(p.heat_share);
   const double sample = record.step;
-  const int steps = std::max(1, static_cast<int>(std::ceil(sample / longest_step_ - 1e-9)));
+  const int steps = detail::steps_over(sample, longest_step_);
   const S h(sample / steps);
-  const S late = p.command_delay / S(sample);
+  const HiddenInputs<S> pushes(hidden, knots, window.samples);
+  RecordedVoltage<S> command(record.command, record.hold, steps, p.command_delay / S(sample));
+  TankState<S> state = begin(tank, start, command.spool(p, window.first, h));
 
-  TankState<S> state = tank_at_rest<S>(p, start[0]);
-  state.gas.temperature = warm ? start[1] : p.air_temperature;
-  state.supply_pressure = droops ? start[2] : head;
-  state.spool = detail::spool_at<S>(p, record.command, window.first, steps, h, late);
-
-  TankTerms<S> t;
-  TankState<S> k1, k2, moved;
+  TankTerms<S> t{};
+  // `at` is counted in samples from the window's first.
   const auto rates = [&](double at, TankState<S>& y, TankState<S>& rate) {
-    if (hidden != nullptr) {
-      tank.params.supply_pressure = head + detail::hidden_at(hidden + knots, knots, window.samples, at);
+    if (pushes) {
+      tank.params.supply_pressure = head + pushes.at(1, at);
       y.supply_pressure = droops ? y.supply_pressure : tank.params.supply_pressure;
     }
-    derivative(tank, y, {detail::command_at<S>(record.command, S(window.first + at) - late)}, t, rate);
-    if (hidden != nullptr) {
-      rate.gas.pressure +=
-          detail::hidden_at(hidden, knots, window.samples, at) * p.gas_constant * p.air_temperature / t.space.volume;
+    derivative(tank, y, {command.at(window.first + at)}, t, rate);
+    if (pushes) {
+      rate.gas.pressure += pushes.at(0, at) * p.gas_constant * p.air_temperature / t.space.volume;
     }
   };
-  detail::FollowingSensor<S> gauge(p.sensor_lag_tank_pressure, h), couple(p.thermocouple_time_constant, h);
-  couple.reading = warm ? start[3] : p.air_temperature;
+  TankSensors<S> sensors(tank, h);
+  sensors.begin(temperature_is_state(p, laws_.chamber) ? start[3] : p.air_temperature);
 
-  const S g = S(detail::kStiffShare) * h;
+  const S g = stiff_share<S>() * h;
+  TankState<S> rate;
   for (int k = 0;; ++k) {
-    rates(k, state, k1);
-    if (k == 0) {
-      gauge.reading = late_reading<S>(state.gas.pressure, k1.gas.pressure, p.sensor_lag_tank_pressure);
-    }
-    residual = readings<S>(p, record, window.first + k, state, k1, gauge.at(state.gas.pressure, k1.gas.pressure),
-                           couple.at(tank_air(tank, state.gas).temperature, k1.gas.temperature), residual);
-    if (k == window.samples - 1) {
-      return;
-    }
     for (int i = 0; i < steps; ++i) {
-      if (i > 0) {
-        rates(k + double(i) / steps, state, k1);
+      const double at = k + double(i) / steps;
+      command.begin_step(window.first + at);
+      rates(at, state, rate);
+      sensors.follow(tank, state, rate, t);
+      if (i == 0) {
+        residual = readings<S>(record, window.first + k, tank, sensors, state, rate, t, residual);
+        if (k == window.samples - 1) {
+          return;
+        }
       }
-      const auto stiffness = detail::tank_stiffness<S>(p, state, t);
-      detail::solve_stiff<S>(stiffness, g, k1);
-      const Gas<S> before = tank_air(tank, state.gas);
-      vector_of(moved) = vector_of(state) + h * vector_of(k1);
-      rates(k + double(i + 1) / steps, moved, k2);
-      vector_of(k2) -= S(2) * vector_of(k1);
-      detail::solve_stiff<S>(stiffness, g, k2);
-      vector_of(state) += (S(0.5) * h) * (S(3) * vector_of(k1) + vector_of(k2));
-      const Gas<S> after = tank_air(tank, state.gas);
-      gauge.step(before.pressure, after.pressure);
-      couple.step(before.temperature, after.temperature);
+      const auto slopes = stiffness(tank, state, t);
+      const auto end_rate = [&](TankState<S> moved, TankState<S>& there) {
+        rates(k + double(i + 1) / steps, moved, there);
+        return SMS_OK;
+      };
+      stiff_step(end_rate, [&](TankState<S>& y) { solve_stiff(slopes, g, y); }, h, rate, state);
     }
   }
 }

@@ -16,8 +16,7 @@
 #include <random>
 
 #include "application.hpp"
-#include "sms/sensor.hpp"
-#include "sms/simulate.hpp"
+#include "platform_sensors.hpp"
 
 namespace sms {
 namespace firmware {
@@ -140,19 +139,14 @@ class VirtualRig {
   static Word counts(double value) { return Word(std::min(std::max(std::floor(value + 0.5), 0.0), kFull)); }
 
   void fill_inputs() {
+    look(plant_);
     for (int i = 0; i < SMS_LEGS; ++i) {
       in_.converted[i] = position_counts(i);
-      const Params<double>& p = plant_.plant.params[i];
-      const ActuatorState<double>& air = plant_.run.state.actuator[i];
-      in_.converted[SMS_LEGS + i] =
-          pressure_counts(sensor_reading(air.lower.pressure - board_.ambient_pressure,
-                                         p.sensor_gain_chamber_pressure_lower, p.sensor_offset_chamber_pressure_lower));
-      in_.converted[2 * SMS_LEGS + i] =
-          pressure_counts(sensor_reading(air.upper.pressure - board_.ambient_pressure,
-                                         p.sensor_gain_chamber_pressure_upper, p.sensor_offset_chamber_pressure_upper));
     }
-    const double supply = plant_.run.state.actuator[0].supply_pressure;
-    in_.converted[SMS_CONVERTED - 1] = pressure_counts(supply - board_.ambient_pressure);
+    const auto convert = [this](int channel, double reading) {
+      in_.converted[channel] = pressure_counts(reading - board_.ambient_pressure);
+    };
+    each_pressure(plant_, convert);
     in_.enabled = is_on(RigFault::enable_open) ? 0 : 1;
     in_.bus_off = is_on(RigFault::bus_off) ? 1 : 0;
     in_.missed_ticks = is_on(RigFault::loop_overrun) ? 1 : 0;
@@ -169,12 +163,8 @@ class VirtualRig {
   }
 
   Word position_counts(int leg) {
-    const Params<double>& p = plant_.plant.params[leg];
     const Converter<double>& c = plant_.electronics.position;
-    // measure() filters and converts; what the sensor adds stands before the converter.
-    const double truth = extension_of(plant_.run.state, plant_.system.terms, leg);
-    double amiss = sensor_reading(truth, p.sensor_gain_extension, p.sensor_offset_extension) - truth;
-    amiss += is_on(RigFault::sensor_jump, leg) ? fault_[int(RigFault::sensor_jump)].amount : 0.0;
+    const double amiss = is_on(RigFault::sensor_jump, leg) ? fault_[int(RigFault::sensor_jump)].amount : 0.0;
     const double read = measure(plant_, board_, leg, amiss + noise(noise_.position) * c.step);
     const Word now = counts((read + board_.potentiometer_margin) / c.step);
     if (is_on(RigFault::sensor_broken, leg)) {

@@ -198,16 +198,32 @@ TEST_CASE("with all of the heat a simulation is that of the energy equation") {
   CHECK((all - energy).norm() < 1e-9 * energy.norm());
 }
 
-TEST_CASE("the lubricant's film follows the speed by a lag of first order, and is the speed where there is none") {
-  using sms::estimation::detail::lagging;
-  double film = 0.3;
-  const double lag = 0.02, h = 1e-3;
-  for (int k = 0; k < 50; ++k) {  // a speed that rises by 2 m/s in a second, from 0.1 m/s
-    film = lagging(film, 0.1 + 2.0 * k * h, 0.1 + 2.0 * (k + 1) * h, lag, h);
-  }
-  const double exact = 0.1 + 2.0 * (0.05 - lag) + (0.3 - 0.1 + 2.0 * lag) * std::exp(-0.05 / lag);
-  CHECK(film == doctest::Approx(exact).epsilon(1e-12));
-  CHECK(lagging(0.3, 0.1, 0.2, 1e-9, h) == doctest::Approx(0.2).epsilon(1e-6));
+TEST_CASE("which way a signal went last: by more than its noise, as far back as it takes") {
+  Eigen::VectorXd signal(8);
+  signal << 0.0, 1.0, 2.0, 1.9, 2.1, 2.0, 0.5, 0.6;
+  CHECK(est::detail::moved_last(signal, 0, 0.5) == 0.0);
+  CHECK(est::detail::moved_last(signal, 2, 0.5) == 1.0);
+  CHECK(est::detail::moved_last(signal, 5, 0.5) == 1.0);
+  CHECK(est::detail::moved_last(signal, 7, 0.5) == -1.0);
+  CHECK(est::detail::moved_last(signal, 7, 5.0) == 0.0);
+}
+
+TEST_CASE("a command that is held: what arrives in a step is its mean, and a delay moves it smoothly") {
+  Eigen::VectorXd volts(4);
+  volts << 1.0, 2.0, 4.0, 3.0;
+  const auto arriving = [&](double at, double late) {
+    est::RecordedVoltage<double> command(volts, est::Hold::previous, 10, late);
+    command.begin_step(at);
+    return command.at(at);
+  };
+  CHECK(arriving(1.0, 0.0) == doctest::Approx(2.0));
+  CHECK(arriving(1.9, 0.0) == doctest::Approx(2.0));
+  CHECK(arriving(2.0, 0.0) == doctest::Approx(4.0));
+  CHECK(arriving(2.0, 0.025) == doctest::Approx(0.25 * 2.0 + 0.75 * 4.0));
+  CHECK(arriving(2.0, 0.1) == doctest::Approx(2.0));
+  CHECK(arriving(2.0, 1.0) == doctest::Approx(2.0));
+  CHECK(arriving(9.0, 0.0) == doctest::Approx(3.0));
+  CHECK(arriving(0.0, 2.0) == doctest::Approx(1.0));
 }
 
 TEST_CASE("a clock that is late by whole samples is taken by the index") {

@@ -5,25 +5,27 @@ them in simulate.hpp, its integrator in integrate_adaptive.hpp. A run is a table
 period, taken when the controller takes its sample.
 
     run = sms.simulate_bench(5.0 + 0.5 * np.sign(np.sin(t)), controller="open_loop")
-    run["extension"], run["chamber_pressure_lower"]          # (n,) each, SI
+    run["extension"], run["chamber_pressure_lower"]          # the truth, (n,) each, SI
+    run.reading("extension")                                 # what its sensor says, and what a record holds
 
 Same input, same result, to the bit, on every run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sms import _core
-from sms._core import Params
+from sms._core import Channel, Params
 from sms.arrays import Array
 from sms.dynamics import mass_model_number
 from sms.kinematics import inverse_kinematics
 
+Simulation = _core.BenchSimulation | _core.PlatformSimulation | _core.TankSimulation
 Progress = Callable[[float], None]
 """Called with the part of the run that is done, 0 to 1, every 0.25 s of simulated time."""
 
@@ -60,10 +62,8 @@ class Run:
         return values
 
     def reading(self, signal: str) -> Array:
-        """What the sensor of a signal says, (n,): signal as in a record, "extension_2"."""
-        if signal == "supply_pressure" and "supply_pressure_1" in self.columns:
-            return self["supply_pressure_1"]
-        return self[signal]
+        """What the sensor of a signal says, as its logger has it, (n,): signal as in a record, "extension_2"."""
+        return self[f"reading_{signal}"]
 
     def legs(self, column: str) -> Array:
         """The columns `column`_1 to _3 of the platform side by side, (n, 3)."""
@@ -108,6 +108,10 @@ def simulate_bench(
     controller_params: Params | None = None,
     tolerance: float = BENCH_TOLERANCE,
     step: float = 0.0,
+    stiff: bool = False,
+    state: ArrayLike | None = None,
+    channels: Mapping[str, Channel] | None = None,
+    seed: int = 0,
     progress: Progress | None = None,
 ) -> Run:
     """One actuator on the bench, from rest.
@@ -118,7 +122,7 @@ def simulate_bench(
         controller: "open_loop", "pid" (eq. 7.4) or "state_feedback" (Figure 8.3).
         compensated: the controller's output steps over the valve's dead band (eq. 7.5).
         electronics: anti-alias filter, 12-bit converter, pulse width and its filter (section 7.3.3);
-            otherwise the controller sees the extension and the valve its command.
+            otherwise the controller sees what the sensor says and the valve its command.
         extension: where the run begins, m; mid-stroke, or in a closed loop the first setpoint.
         load_force: on the rod, N, against extension, (n,) or one number.
         mean_pressure: of both chambers at the beginning, Pa absolute.
@@ -131,7 +135,14 @@ def simulate_bench(
         controller_params: of the controller and its electronics; those of the plant by default.
         tolerance: error estimate of one integrator step, relative; not used with `step`.
         step: s; if positive, fixed Runge-Kutta steps of at most this size.
+        stiff: the fixed steps are those of integrate_stiff.hpp, which estimation takes.
+        state: where the run begins instead, the first columns of another run's row.
+        channels: by signal, what its logger makes of the reading: noise, range, rounding.
+        seed: of that noise.
         progress: told how far the run is.
+
+    The errors of the sensors are parameters of the plant (sensor_gain_extension, backlash, ...): the controller gets
+    what the position sensor says, `run.reading` gives what the loggers have.
 
     Raises: SimulationStoppedError, with what was computed; NotANumberError, OutOfRangeError.
     """
@@ -148,9 +159,10 @@ def simulate_bench(
         chamber_law=chamber_law, control=controller, compensated=compensated,
         electronics=electronics, extension=begin,
         load_force=float(load[0, 0]) if load.size else 0.0, mean_pressure=mean_pressure,
-        tolerance=tolerance, step=step,
+        tolerance=tolerance, step=step, stiff=stiff, state=_state(state),
     )  # fmt: skip
-    return _run(simulation, setpoint, noise, load, float(own["control_period"]), progress)
+    logged = _Logged(channels or {}, seed)
+    return _run(simulation, setpoint, noise, load, float(own["control_period"]), logged, progress)
 
 
 def simulate_platform(
@@ -171,6 +183,10 @@ def simulate_platform(
     controller_params: Params | None = None,
     tolerance: float = PLATFORM_TOLERANCE,
     step: float = 0.0,
+    stiff: bool = False,
+    state: ArrayLike | None = None,
+    channels: Mapping[str, Channel] | None = None,
+    seed: int = 0,
     progress: Progress | None = None,
 ) -> Run:
     """The platform on its three actuators, from rest; see `simulate_bench` for what is the same.
@@ -195,10 +211,12 @@ def simulate_platform(
         params=plants, controller=own, valve_law=valve_law, friction_law=friction_law,
         chamber_law=chamber_law, masses=mass_model_number(masses), control=controller,
         compensated=compensated, electronics=electronics, q=tuple(float(x) for x in pose),
-        mean_pressure=mean_pressure, tolerance=tolerance, step=step,
+        mean_pressure=mean_pressure, tolerance=tolerance, step=step, stiff=stiff,
+        state=_state(state),
     )  # fmt: skip
     load = np.broadcast_to(_columns("wrench", wrench, 6), (len(setpoint), 6))
-    return _run(simulation, setpoint, noise, load, float(own["control_period"]), progress)
+    logged = _Logged(channels or {}, seed)
+    return _run(simulation, setpoint, noise, load, float(own["control_period"]), logged, progress)
 
 
 def simulate_tank(
@@ -209,6 +227,10 @@ def simulate_tank(
     params: Params | None = None,
     tolerance: float = BENCH_TOLERANCE,
     step: float = 0.0,
+    stiff: bool = False,
+    state: ArrayLike | None = None,
+    channels: Mapping[str, Channel] | None = None,
+    seed: int = 0,
     progress: Progress | None = None,
 ) -> Run:
     """The tank of the flow test behind one port of the valve, closed before; it begins at
@@ -222,6 +244,7 @@ def simulate_tank(
         params: of valve and tank.
         tolerance: error estimate of one integrator step, relative; not used with `step`.
         step: s; if positive, fixed Runge-Kutta steps of at most this size.
+        stiff, state, channels, seed: as in `simulate_bench`.
         progress: called with the part that is done.
 
     Columns: tank_pressure, tank_temperature, mass_flow (into the tank), supply_pressure,
@@ -236,9 +259,12 @@ def simulate_tank(
         pressure=params.tank_initial_pressure,
         tolerance=tolerance,
         step=step,
+        stiff=stiff,
+        state=_state(state),
     )
     nothing = np.zeros((len(volts), 1))
-    return _run(simulation, volts, 0.0, nothing, params.control_period, progress)
+    logged = _Logged(channels or {}, seed)
+    return _run(simulation, volts, 0.0, nothing, params.control_period, logged, progress)
 
 
 def extensions_of(
@@ -271,12 +297,38 @@ def _columns(name: str, values: ArrayLike, width: int) -> Array:
     return array
 
 
+@dataclass(frozen=True, slots=True)
+class _Logged:
+    """How the readings of a run are recorded."""
+
+    channels: Mapping[str, Channel]
+    seed: int
+
+    def rows(self, simulation: Simulation, rows: Array) -> Array:
+        """The rows of a run as its loggers have them."""
+        names = [name.removeprefix("reading_") for name in simulation.readings]
+        unknown = sorted(set(self.channels) - set(names))
+        if unknown:
+            raise ValueError(
+                f"there is no reading of {', '.join(unknown)}; there is {', '.join(names)}"
+            )
+        channels = [self.channels.get(name, Channel()) for name in names]
+        draws = np.random.default_rng(self.seed).standard_normal((len(rows), len(names)))
+        recorded: Array = simulation.record(rows, channels, draws)
+        return recorded
+
+
+def _state(state: ArrayLike | None) -> Array | None:
+    return None if state is None else np.asarray(state, dtype=np.float64)
+
+
 def _run(
-    simulation: _core.BenchSimulation | _core.PlatformSimulation | _core.TankSimulation,
+    simulation: Simulation,
     setpoint: Array,
     noise: ArrayLike,
     load: Array,
     period: float,
+    logged: _Logged,
     progress: Progress | None,
 ) -> Run:
     n, legs = setpoint.shape
@@ -298,7 +350,7 @@ def _run(
     run = Run(
         period * np.arange(done, dtype=np.float64),
         tuple(simulation.columns),
-        rows[:done],
+        logged.rows(simulation, rows[:done]),
         simulation.evaluations,
         simulation.steps,
     )

@@ -13,7 +13,7 @@
 
 #include "bench.hpp"
 #include "exchange.hpp"
-#include "sms/simulate.hpp"
+#include "platform_sensors.hpp"
 
 namespace {
 
@@ -41,13 +41,12 @@ struct Machine {
   }
   double extension(int leg) const { return sms::extension_of(simulation.run.state, simulation.system.terms, leg); }
   void fill(const fw::Parameters& p, sms_hardware_inputs& in) {
+    sms::look(simulation);
     for (int i = 0; i < SMS_LEGS; ++i) {
-      const sms::ActuatorState<double>& air = simulation.run.state.actuator[i];
       in.converted[i] = fw::counts_of_extension(p, i, sms::measure(simulation, params, i, 0.0));
-      in.converted[3 + i] = fw::counts_of_pressure(p, air.lower.pressure);
-      in.converted[6 + i] = fw::counts_of_pressure(p, air.upper.pressure);
     }
-    in.converted[9] = fw::counts_of_pressure(p, simulation.run.state.actuator[0].supply_pressure);
+    fw::each_pressure(simulation,
+                      [&](int channel, double reading) { in.converted[channel] = fw::counts_of_pressure(p, reading); });
     in.enabled = 1;
   }
 };

@@ -7,7 +7,8 @@
 // (platform.hpp). Both hand over extension and velocity and take the force; what the air does between is the same.
 //
 // State of one actuator: pressures and temperatures of two chambers, the spool and what drives it, the deflection of the
-// seals, and the pressure of the reservoir in front of the valve. A law without one of these leaves it where it is.
+// seals and the speed of their film, and the pressure of the reservoir in front of the valve. A law or an effect that is
+// not there leaves its own where it is.
 #pragma once
 
 #include "sms/end_stop.hpp"
@@ -15,12 +16,6 @@
 #include "sms/vessel.hpp"
 
 namespace sms {
-
-// What becomes of heat.
-enum class ChamberLaw : int {
-  polytropic,  // eq. 4.30: temperature constant, three ratios
-  energy       // temperature a state, heat through the wall
-};
 
 // Which law stands for which part.
 struct ActuatorLaws {
@@ -40,9 +35,15 @@ struct ActuatorState {
   Gas<S> upper;
   Lag<S> spool;       // as the command that would hold it there: V, V/s
   Lag<S> drive;       // voltage at the valve, V, V/s; with drive_filter
-  S deflection;       // of the seals, m; Dahl and LuGre
+  S deflection;       // of the seals, m; Dahl, LuGre, presliding_share
   S supply_pressure;  // in the reservoir at the valve, Pa; with supply_line_resistance
+  S film;             // speed of the lubricant's film, m/s; with friction_lag
 };
+
+template <typename S>
+SealState<S> seals_of(const ActuatorState<S>& state) {
+  return {state.deflection, state.film};
+}
 
 // The air at one pose and rate; filled by fill_chambers().
 template <typename S>
@@ -57,32 +58,19 @@ struct ActuatorTerms {
 };
 
 template <typename S>
-HeatRatios<S> heat_ratios(const Params<S>& p, ChamberLaw law) {
-  return law == ChamberLaw::energy ? adiabatic_ratios(p) : polytropic_ratios(p);
-}
-
-template <typename S>
 void fill_chambers(const Params<S>& p, const ActuatorLaws& laws, const ActuatorState<S>& state, const S& extension,
                    const S& velocity, ActuatorTerms<S>& t) {
   t.lower = lower_space(p, extension, velocity);
   t.upper = upper_space(p, extension, velocity);
-  t.ports = {
-      {state.supply_pressure, p.air_temperature}, state.lower, state.upper, {p.ambient_pressure, p.air_temperature}};
+  t.ports = {{state.supply_pressure, p.air_temperature},
+             seen_air(p, laws.chamber, state.lower),
+             seen_air(p, laws.chamber, state.upper),
+             {p.ambient_pressure, p.air_temperature}};
   const EdgeFlows<S> edge = valve_flows(p, laws.valve, heat_ratios(p, laws.chamber), state.spool.value, t.ports);
   t.edge = through_tubes(p, edge, t.ports);
   t.flow = actuator_flows(p, t.edge, t.ports);
   t.piston = {extension, velocity, S(0), state.lower.pressure, state.upper.pressure};
   t.force = pressure_force(p, t.piston) + end_stop_force(p, extension, velocity);
-}
-
-template <typename S>
-Gas<S> chamber_rate(const Params<S>& p, ChamberLaw law, const Gas<S>& gas, const ChamberSpace<S>& space,
-                    const ChamberFlow<S>& flow) {
-  if (law == ChamberLaw::energy) {
-    const GasRate<S> rate = energy_rates(p, gas, space, flow);
-    return {rate.pressure, rate.temperature};
-  }
-  return {polytropic_pressure_rate(p, polytropic_ratios(p), gas, space, flow), S(0)};
 }
 
 // Only these depend on the command, V: an integrator whose step ends where the command jumps need renew no more.
@@ -99,12 +87,18 @@ void drive_rates(const Params<S>& p, const ActuatorLaws& laws, const ActuatorSta
   }
 }
 
-// All rates but that of the deflection, which comes out of the force balance; after fill_chambers().
+template <typename S>
+void seal_rates(const ForceBalance<S>& balance, ActuatorState<S>& rate) {
+  rate.deflection = balance.deflection_rate;
+  rate.film = balance.film_rate;
+}
+
+// All rates but those of the seals, which come out of the force balance; after fill_chambers().
 template <typename S>
 void actuator_rates(const Params<S>& p, const ActuatorLaws& laws, const ActuatorState<S>& state, const S& command,
                     const ActuatorTerms<S>& t, ActuatorState<S>& rate) {
-  rate.lower = chamber_rate(p, laws.chamber, state.lower, t.lower, t.flow.lower);
-  rate.upper = chamber_rate(p, laws.chamber, state.upper, t.upper, t.flow.upper);
+  rate.lower = gas_rate(p, laws.chamber, state.lower, t.ports.lower, t.lower, t.flow.lower);
+  rate.upper = gas_rate(p, laws.chamber, state.upper, t.ports.upper, t.upper, t.flow.upper);
   drive_rates(p, laws, state, command, rate);
   rate.supply_pressure = reservoir_pressure_rate(p, state.supply_pressure, t.flow.drawn);
 }
@@ -118,7 +112,8 @@ ActuatorState<S> actuator_at_rest(const Params<S>& p, const S& pressure_lower, c
           closed,
           closed,
           S(0),
-          p.supply_pressure};
+          p.supply_pressure,
+          S(0)};
 }
 
 // Sizes against which an error of the state is judged: the ranges that it runs through.
@@ -126,7 +121,7 @@ template <typename S>
 ActuatorState<S> actuator_scale() {
   const Gas<S> gas = {S(4e5), S(300)};
   const Lag<S> voltage = {S(10), S(4e3)};
-  return {gas, gas, voltage, voltage, S(1e-3), S(4e5)};
+  return {gas, gas, voltage, voltage, S(1e-3), S(4e5), S(0.5)};
 }
 
 // False where the piston has gone so far into an end that a chamber holds no air any more: less than a cubic millimetre,

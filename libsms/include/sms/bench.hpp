@@ -63,11 +63,11 @@ sms_status derivative(const Bench<S>& bench, const BenchState<S>& state, const B
   }
   const S drive = t.actuator.force - input.load_force;
   t.balance =
-      force_balance<S>(p, bench.laws.friction, t.actuator.piston, state.actuator.deflection, p.moving_mass, drive);
+      seal_balance<S>(p, bench.laws.friction, t.actuator.piston, seals_of(state.actuator), p.moving_mass, drive);
   rate.extension = state.velocity;
   rate.velocity = t.balance.acceleration;
   actuator_rates(p, bench.laws, state.actuator, input.command, t.actuator, rate.actuator);
-  rate.actuator.deflection = t.balance.deflection_rate;
+  seal_rates(t.balance, rate.actuator);
   return is_finite(rate.velocity) && is_finite(rate.actuator.lower.pressure) && is_finite(rate.actuator.upper.pressure)
              ? SMS_OK
              : SMS_NOT_A_NUMBER;

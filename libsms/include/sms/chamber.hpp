@@ -18,6 +18,10 @@
 //
 // with 1.4, 1.0 and 1.2. All ratios kappa, it is the full equation without heat at equal temperatures.
 //
+// heat_share lies between the two, from the polytropic law (0) to the energy equation with heat through the wall (1). In
+// between the temperature is a state, flows see air that is warmer than the supplied by that share of it, and the rate
+// of the pressure is that mixture of both. An effect of the polytropic law, absent at zero.
+//
 // The volumes: V = V_dead + A x below the piston and V_dead + A_b (stroke - x) above it, x the extension. Their rates
 // have opposite signs (eq. 4.31; eq. 4.32 prints one sign for both). The tube between valve and chamber adds its
 // volume. Valid for p, T, V > 0; nothing here guards a chamber that has been emptied.
@@ -28,6 +32,12 @@
 #include "sms/valve.hpp"
 
 namespace sms {
+
+// What becomes of heat.
+enum class ChamberLaw : int {
+  polytropic,  // eq. 4.30: temperature constant, three ratios
+  energy       // temperature a state, heat through the wall
+};
 
 template <typename S>
 HeatRatios<S> polytropic_ratios(const Params<S>& p) {
@@ -157,6 +167,70 @@ GasRate<S> energy_rates(const Params<S>& p, const Gas<S>& gas, const ChamberSpac
   const S mass = flow.in - flow.out;
   const S relative = pressure / gas.pressure + space.rate / space.volume - mass / air_mass(p, gas, space.volume);
   return {pressure, gas.temperature * relative, mass};
+}
+
+template <typename S>
+Gas<S> chamber_rate(const Params<S>& p, ChamberLaw law, const Gas<S>& gas, const ChamberSpace<S>& space,
+                    const ChamberFlow<S>& flow) {
+  if (law == ChamberLaw::energy) {
+    const GasRate<S> rate = energy_rates(p, gas, space, flow);
+    return {rate.pressure, rate.temperature};
+  }
+  return {polytropic_pressure_rate(p, polytropic_ratios(p), gas, space, flow), S(0)};
+}
+
+// ---- between the two laws: heat_share ----
+
+template <typename S>
+bool is_partly_warm(const Params<S>& p, ChamberLaw law) {
+  return law == ChamberLaw::polytropic && !is_absent(p.heat_share);
+}
+
+template <typename S>
+bool temperature_is_state(const Params<S>& p, ChamberLaw law) {
+  return law == ChamberLaw::energy || is_partly_warm(p, law);
+}
+
+// The air as flows and thermometers see it.
+template <typename S>
+Gas<S> seen_air(const Params<S>& p, ChamberLaw law, const Gas<S>& gas) {
+  if (!is_partly_warm(p, law)) {
+    return gas;
+  }
+  return {gas.pressure, p.air_temperature + p.heat_share * (gas.temperature - p.air_temperature)};
+}
+
+// K/s of its temperature, from that of the state.
+template <typename S>
+S seen_temperature_rate(const Params<S>& p, ChamberLaw law, const S& rate) {
+  return is_partly_warm(p, law) ? S(p.heat_share * rate) : rate;
+}
+
+// The valve's tables hold for a tank of given heat ratios, and its flow follows them (valve_table.hpp).
+template <typename S>
+HeatRatios<S> heat_ratios(const Params<S>& p, ChamberLaw law) {
+  if (law == ChamberLaw::energy) {
+    return adiabatic_ratios(p);
+  }
+  HeatRatios<S> ratios = polytropic_ratios(p);
+  if (is_partly_warm(p, law)) {
+    ratios.in += p.heat_share * (p.heat_capacity_ratio - ratios.in);
+    ratios.out += p.heat_share * (p.heat_capacity_ratio - ratios.out);
+  }
+  return ratios;
+}
+
+// Pa/s and K/s of a chamber whose flows see `seen`.
+template <typename S>
+Gas<S> gas_rate(const Params<S>& p, ChamberLaw law, const Gas<S>& gas, const Gas<S>& seen,
+                const ChamberSpace<S>& space, const ChamberFlow<S>& flow) {
+  Gas<S> rate = chamber_rate(p, law, seen, space, flow);
+  if (is_partly_warm(p, law)) {
+    const GasRate<S> warm = energy_rates(p, gas, space, flow);
+    rate.pressure += p.heat_share * (warm.pressure - rate.pressure);
+    rate.temperature = warm.temperature;
+  }
+  return rate;
 }
 
 }  // namespace sms

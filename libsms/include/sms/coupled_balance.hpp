@@ -178,4 +178,44 @@ sms_status coupled_accelerations(const Params<S> (&p)[3], FrictionLaw law, const
   return SMS_OK;
 }
 
+// The balance of three pistons with their seals, under any of the laws:  mass e'' + friction = drive. `by_law` comes in
+// as a first guess of the accelerations, and leaves as what they are by the law alone: where the next search begins.
+template <typename S>
+sms_status balance_pistons(const Params<S> (&p)[3], FrictionLaw law, const Piston<S> (&piston)[3],
+                           const SealState<S> (&seals)[3], const Mat3<S>& mass, const Vec3<S>& drive, Vec3<S>& by_law,
+                           ForceBalance<S> (&balance)[3]) {
+  Vec3<S> friction;
+  if (depends_on_acceleration(law)) {
+    const sms_status status = coupled_accelerations(p, law, piston, mass, drive, by_law);
+    if (status != SMS_OK) {
+      return status;
+    }
+    friction = drive - mass * by_law;
+    for (int i = 0; i < 3; ++i) {
+      balance[i] = {by_law(i), friction(i), S(0), S(0)};
+    }
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      balance[i] = force_balance<S>(p[i], law, piston[i], seals[i].deflection, S(1), S(0));
+      friction(i) = balance[i].friction;
+    }
+    by_law = solution<S>(mass, drive - friction);
+    for (int i = 0; i < 3; ++i) {
+      balance[i].acceleration = by_law(i);
+    }
+  }
+  if (seals_deviate(p[0]) || seals_deviate(p[1]) || seals_deviate(p[2])) {
+    Vec3<S> deviation;
+    for (int i = 0; i < 3; ++i) {
+      deviation(i) = seal_deviation(p[i], piston[i], seals[i], balance[i]);
+    }
+    const Vec3<S> slowed = solution<S>(mass, deviation);
+    for (int i = 0; i < 3; ++i) {
+      balance[i].acceleration -= slowed(i);
+      balance[i].friction += deviation(i);
+    }
+  }
+  return SMS_OK;
+}
+
 }  // namespace sms

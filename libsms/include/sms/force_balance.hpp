@@ -15,6 +15,11 @@
 //
 // Laws whose friction does not depend on the acceleration go through the same door, so that a plant names its law and
 // nothing else changes.
+//
+// Two effects give the seals a memory under any of the laws; absent until data switches them on:
+//   presliding     a share of the friction is carried by the seals' deformation (LuGre), up to what sliding needs, F_C
+//   friction_lag   viscous friction follows the speed w of the lubricant's film, which is late: w' = (v - w) / lag
+// Their force acts beside that of the law: what it takes of the acceleration does not change the law's branch.
 #pragma once
 
 #include <limits>
@@ -42,6 +47,7 @@ struct ForceBalance {
   S acceleration;     // m/s^2
   S friction;         // N, positive against extension
   S deflection_rate;  // z', m/s; 0 for laws without one
+  S film_rate;        // of the lubricant's film, m/s^2; 0 without friction_lag
 };
 
 namespace detail {
@@ -155,16 +161,16 @@ ForceBalance<S> force_balance(const Params<S>& p, FrictionLaw law, const Piston<
   switch (law) {
     case FrictionLaw::acceleration_dependent: {
       const S a = acceleration_against_friction(p, piston, mass, drive);
-      return {a, drive - mass * a, S(0)};
+      return {a, drive - mass * a, S(0), S(0)};
     }
     case FrictionLaw::two_branch: {
       const S a = acceleration_against_two_branches(p, piston, mass, drive);
-      return {a, drive - mass * a, S(0)};
+      return {a, drive - mass * a, S(0), S(0)};
     }
     case FrictionLaw::stribeck: {
       const S dry = stribeck_force(p, piston.velocity);
       const S force = p.viscous_friction * piston.velocity + friction_ramp(piston.velocity, p.stiction_velocity) * dry;
-      return {(drive - force) / mass, force, S(0)};
+      return {(drive - force) / mass, force, S(0), S(0)};
     }
     case FrictionLaw::dahl:
     case FrictionLaw::lugre:
@@ -172,7 +178,66 @@ ForceBalance<S> force_balance(const Params<S>& p, FrictionLaw law, const Piston<
   }
   const BristleFriction<S> bristle =
       law == FrictionLaw::dahl ? dahl_friction(p, piston, deflection) : lugre_friction(p, piston, deflection);
-  return {(drive - bristle.force) / mass, bristle.force, bristle.deflection_rate};
+  return {(drive - bristle.force) / mass, bristle.force, bristle.deflection_rate, S(0)};
+}
+
+// ---- seals with a memory, whatever the law ----
+
+// What seals remember.
+template <typename S>
+struct SealState {
+  S deflection;  // z, m
+  S film;        // speed of the lubricant's film, m/s
+};
+
+template <typename S>
+bool seals_deviate(const Params<S>& p) {
+  return !is_absent(p.presliding_share) || !is_absent(p.friction_lag);
+}
+
+// Whether their deflection is a state.
+template <typename S>
+bool seals_deform(const Params<S>& p, FrictionLaw law) {
+  return law == FrictionLaw::dahl || law == FrictionLaw::lugre || !is_absent(p.presliding_share);
+}
+
+// A film that is late by less than half a millisecond is late to first order, w = v - lag a.
+template <typename S>
+bool film_is_state(const Params<S>& p) {
+  return !(p.friction_lag < S(5e-4));
+}
+
+// By how much friction is more than its law says, N; `balance` is that of the law and gets the rates of the seals' state.
+template <typename S>
+S seal_deviation(const Params<S>& p, const Piston<S>& piston, const SealState<S>& seals, ForceBalance<S>& balance) {
+  S force(0);
+  if (!is_absent(p.presliding_share)) {
+    const BristleFriction<S> bristle = lugre_friction<S>(p, piston, seals.deflection, p.coulomb_force);
+    force += p.presliding_share * (bristle.force - balance.friction);
+    balance.deflection_rate = bristle.deflection_rate;
+  }
+  if (!is_absent(p.friction_lag)) {
+    if (film_is_state(p)) {
+      force += p.viscous_friction * (seals.film - piston.velocity);
+      balance.film_rate = (piston.velocity - seals.film) / p.friction_lag;
+    } else {
+      force -= p.viscous_friction * p.friction_lag * balance.acceleration;
+    }
+  }
+  return force;
+}
+
+// The piston with its seals as they are.
+template <typename S>
+ForceBalance<S> seal_balance(const Params<S>& p, FrictionLaw law, const Piston<S>& piston, const SealState<S>& seals,
+                             const S& mass, const S& drive) {
+  ForceBalance<S> balance = force_balance(p, law, piston, seals.deflection, mass, drive);
+  if (seals_deviate(p)) {
+    const S deviation = seal_deviation(p, piston, seals, balance);
+    balance.acceleration -= deviation / mass;
+    balance.friction += deviation;
+  }
+  return balance;
 }
 
 }  // namespace sms

@@ -75,8 +75,9 @@ typedef struct sms_actuator_state {
   sms_gas upper;          /* chamber that retracts it */
   sms_lag spool;          /* as the command that would hold it there: V, V/s */
   sms_lag drive;          /* voltage at the valve, V, V/s; with drive_filter */
-  double deflection;      /* of the seals, m; Dahl and LuGre */
+  double deflection;      /* of the seals, m; Dahl, LuGre, presliding_share */
   double supply_pressure; /* in the reservoir at the valve, Pa; with supply_line_resistance */
+  double film;            /* speed of the lubricant's film, m/s; with friction_lag */
 } sms_actuator_state;
 
 typedef struct sms_actuator_statef {
@@ -86,6 +87,7 @@ typedef struct sms_actuator_statef {
   sms_lagf drive;
   float deflection;
   float supply_pressure;
+  float film;
 } sms_actuator_statef;
 
 typedef struct sms_bench_state {

@@ -41,7 +41,7 @@ struct PlatformTerms {
   Vec3<S> extension;
   Vec3<S> friction;      // F_f, N
   Vec3<S> acceleration;  // q''
-  Vec3<S> along;         // e'' of the pistons; the next balance begins there
+  Vec3<S> along;         // e'' of the pistons by the law of their friction; the next balance begins there
 };
 
 template <typename S>
@@ -98,37 +98,30 @@ Vec3<S> panhard_load(const Params<S>& p, const Motion<S>& m) {
   return load;
 }
 
-// q'' and the pistons' friction under eq. 6.5 or 6.2, whose friction and acceleration depend on each other.
+// q'' and the pistons' friction, in the coordinates of the pistons.
 template <typename S>
-sms_status balance_coupled(const Platform<S>& platform, const Vec3<S>& force, const Vec3<S>& other,
-                           PlatformTerms<S>& t) {
+sms_status balance_platform(const Platform<S>& platform, const PlatformState<S>& state, const Vec3<S>& force,
+                            const Vec3<S>& other, PlatformTerms<S>& t, PlatformState<S>& rate) {
   const Motion<S>& m = t.dynamics.motion;
   const Mat3<S> to_pistons = inverse(m.extension_slope);
   const Mat3<S> transposed = to_pistons.transpose();
   const Mat3<S> mass = symmetric_product<S>(to_pistons, t.dynamics.mass_matrix * to_pistons);
   const Vec3<S> drive = force + transposed * other + mass * m.extension_bias;
   const Piston<S> piston[3] = {t.actuator[0].piston, t.actuator[1].piston, t.actuator[2].piston};
+  const SealState<S> seals[3] = {seals_of(state.actuator[0]), seals_of(state.actuator[1]), seals_of(state.actuator[2])};
+  ForceBalance<S> balance[3];
   const sms_status status =
-      coupled_accelerations(platform.params, platform.laws.friction, piston, mass, drive, t.along);
+      balance_pistons(platform.params, platform.laws.friction, piston, seals, mass, drive, t.along, balance);
   if (status == SMS_OK) {
-    t.friction = drive - mass * t.along;
-    t.acceleration = to_pistons * (t.along - m.extension_bias);
+    Vec3<S> along;
+    for (int i = 0; i < 3; ++i) {
+      along(i) = balance[i].acceleration;
+      t.friction(i) = balance[i].friction;
+      seal_rates(balance[i], rate.actuator[i]);
+    }
+    t.acceleration = to_pistons * (along - m.extension_bias);
   }
   return status;
-}
-
-// The same under a law that needs no acceleration.
-template <typename S>
-void balance_direct(const Platform<S>& platform, const PlatformState<S>& state, const Vec3<S>& force,
-                    const Vec3<S>& other, PlatformTerms<S>& t, PlatformState<S>& rate) {
-  for (int i = 0; i < 3; ++i) {
-    const ForceBalance<S> alone = force_balance<S>(platform.params[i], platform.laws.friction, t.actuator[i].piston,
-                                                   state.actuator[i].deflection, S(1), S(0));
-    t.friction(i) = alone.friction;
-    rate.actuator[i].deflection = alone.deflection_rate;
-  }
-  const Vec3<S> load = actuator_load<S>(t.dynamics, force - t.friction) + other;
-  t.acceleration = solution<S>(t.dynamics.mass_matrix, load);
 }
 
 template <typename S>
@@ -154,15 +147,10 @@ sms_status derivative(const Platform<S>& platform, const PlatformState<S>& state
     force(i) = t.actuator[i].force;
     actuator_rates<S>(platform.params[i], platform.laws, state.actuator[i], input.command(i), t.actuator[i],
                       rate.actuator[i]);
-    rate.actuator[i].deflection = S(0);
   }
   const Vec3<S> other = platform_load(t.dynamics, input.wrench) + panhard_load(platform.params[0], t.dynamics.motion) -
                         t.dynamics.inertial - t.dynamics.weight;
-  if (depends_on_acceleration(platform.laws.friction)) {
-    status = balance_coupled(platform, force, other, t);
-  } else {
-    balance_direct(platform, state, force, other, t, rate);
-  }
+  status = balance_platform(platform, state, force, other, t, rate);
   rate.q = state.rate;
   rate.rate = t.acceleration;
   return status == SMS_OK && !is_finite(rate.rate) ? SMS_NOT_A_NUMBER : status;

@@ -1,20 +1,35 @@
-// What a sensor says, against what is there: reading = (1 + gain) truth + offset.
+// What a sensor says, against what is there. One chain for simulation, virtual rig and estimation:
 //
-// Gain and offset are effects (sensor_gain, sensor_offset of each measured signal), zero for a good sensor. The model
-// computes with truths; a record holds readings. A gauge sensor compares with ambient, so that its gain acts on the
-// difference.
+//   truth -> mount, play -> lag of its filter -> gain, zero -> noise -> range -> rounding -> clock of its logger
 //
-// Late sensors. What is slow beside the sensor's filter or the logger's clock is read as it was tau ago, to first order
-// y - tau y'; whole samples of a clock are taken by the index. Effects, absent at zero: sensor_lag, clock_skew.
+// Gain and zero: reading = datum + (1 + gain) (truth - datum) + offset. The datum is zero but for a thermocouple, which
+// measures against its cold junction. The model computes with truths; a record holds readings.
+//
+// Lag. A sensor follows by a first-order lag, x' = (truth - x) / lag, stepped exactly for a truth that runs straight from
+// one look to the next. Where the lag is shorter than such a step the sensor is read as it was that long ago, to first
+// order, y - lag y': the limit of the same. A delay by the same time differs from a lag by half its square times the
+// acceleration; that is how a slow sensor and a late clock are told apart.
+//
+// Clock. A logger whose clock is late by tau writes at t what was there at t - tau: whole samples by the index, the rest to
+// first order. Only the record has it; a controller reads its own converter.
 //
 // What stands between the piston and a position sensor: a mount that yields under the force (frame_compliance) and play
 // at the rod's eye (backlash). Play has a memory: the sensor is pushed by one side of the eye or the other, and rests
 // while the rod crosses the gap.
+//
+// Which signals there are, and which parameters their sensors have, is in signals.def. All are effects: absent at zero.
 #pragma once
 
-#include "sms/friction.hpp"
+#include <cmath>
+#include <limits>
+
+#include "sms/effect.hpp"
+#include "sms/filter.hpp"
+#include "sms/limit.hpp"
 
 namespace sms {
+
+// ---- gain and zero ----
 
 template <typename S>
 S sensor_reading(const S& truth, const S& gain, const S& offset) {
@@ -26,11 +41,92 @@ S sensor_truth(const S& reading, const S& gain, const S& offset) {
   return (reading - offset) / (S(1) + gain);
 }
 
+// What is wrong with one sensor, by the parameters.
+template <typename S>
+struct SensorErrors {
+  S gain, offset;  // offset in the signal's unit
+  S lag;           // s, of its filter
+  S clock;         // s, of its logger
+  S datum;         // in the signal's unit
+
+  S reading(const S& truth) const {
+    return has_datum() ? S(datum + sensor_reading<S>(truth - datum, gain, offset))
+                       : sensor_reading(truth, gain, offset);
+  }
+  S truth(const S& reading) const {
+    return has_datum() ? S(datum + sensor_truth<S>(reading - datum, gain, offset))
+                       : sensor_truth(reading, gain, offset);
+  }
+
+ private:
+  bool has_datum() const { return value_of(datum) > ValueOf<S>(0); }
+};
+
+// extension_sensor(p), supply_pressure_sensor(p), ...
+#define SMS_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high) \
+  template <typename S>                                                                \
+  SensorErrors<S> name##_sensor(const Params<S>& p) {                                  \
+    return {p.sensor_gain_##name, p.sensor_offset_##name, S(lag), S(clock), S(datum)}; \
+  }
+#include "sms/signals.def"
+
+// ---- lag ----
+
 // y as it was `late` ago.
 template <typename S>
 S late_reading(const S& value, const S& rate, const S& late) {
   return value - late * rate;
 }
+
+// A sensor and its filter in time.
+template <typename S>
+class Sensor {
+ public:
+  Sensor() = default;
+  // step: from one look at the truth to the next, s.
+  Sensor(const SensorErrors<S>& errors, const S& step) : errors_(errors), step_(step) {
+    if (value_of(errors.lag) > value_of(step)) {
+      follows_ = true;
+      weight_ = low_pass_weight<S>(S(1) / errors.lag, step);
+    }
+  }
+
+  const SensorErrors<S>& errors() const { return errors_; }
+  bool follows() const { return follows_; }
+
+  // Where its filter stands at the first look, if it is not that of a truth that has been rising steadily for long.
+  void begin(const S& filtered) {
+    filtered_ = filtered;
+    given_ = true;
+  }
+
+  // The truth a step after the last call.
+  void follow(const S& truth, const S& rate) {
+    if (!follows_) {
+      return;
+    }
+    if (begun_) {
+      filtered_ = low_pass_ramp_step<S>(S(1) / errors_.lag, step_, weight_, filtered_, before_, truth);
+    } else if (!given_) {
+      filtered_ = late_reading<S>(truth, rate, errors_.lag);
+    }
+    before_ = truth;
+    begun_ = true;
+  }
+
+  // What it says at this truth, `late` seconds ago.
+  S reading(const S& truth, const S& rate, const S& late = S(0)) const {
+    return errors_.reading(follows_ ? late_reading<S>(filtered_, (truth - filtered_) / errors_.lag, late)
+                                    : late_reading<S>(truth, rate, late + errors_.lag));
+  }
+
+ private:
+  SensorErrors<S> errors_{};
+  S step_{0}, filtered_{0}, weight_{0}, before_{0};
+  bool follows_ = false, given_ = false, begun_ = false;
+};
+
+// ---- mount and play ----
 
 // Where the eye of a position sensor on this mount is; `force` is that of the cylinder on it, N.
 template <typename S>
@@ -43,6 +139,46 @@ template <typename S>
 S played(const S& before, const S& now, const S& backlash) {
   const S half = S(0.5) * backlash;
   return before < now - half ? S(now - half) : before > now + half ? S(now + half) : before;
+}
+
+// ---- noise, range, rounding ----
+
+enum class Rounding : int {
+  nearest,
+  down  // what a converter does that counts full steps
+};
+
+template <typename S>
+S rounded(const S& value, const S& step, Rounding rounding) {
+  using std::floor;
+  return step * floor(value / step + (rounding == Rounding::nearest ? S(0.5) : S(0)));
+}
+
+// What a logger's channel makes of a reading; as it stands here: nothing.
+template <typename S>
+struct Channel {
+  S noise = S(0);  // standard deviation, in the signal's unit
+  S low = std::numeric_limits<S>::lowest();  // ends of the range, where the reading stays
+  S high = std::numeric_limits<S>::max();
+  S resolution = S(0);  // step of its converter
+  Rounding rounding = Rounding::nearest;
+
+  // draw: standard normal.
+  S recorded(const S& reading, const S& draw) const {
+    const S seen = limited<S>(reading + noise * draw, low, high);
+    return resolution > S(0) ? rounded(seen, resolution, rounding) : seen;
+  }
+};
+
+// ---- clock ----
+
+// How many whole samples a clock is late, and what is left of it, s.
+template <typename S>
+int whole_samples(const ValueOf<S>& step, const S& late, S* rest) {
+  using std::floor;
+  const int samples = static_cast<int>(floor(value_of(late) / step + ValueOf<S>(0.5)));
+  *rest = late - S(ValueOf<S>(samples) * step);
+  return samples;
 }
 
 }  // namespace sms

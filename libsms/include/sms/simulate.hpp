@@ -1,10 +1,11 @@
 // A plant under sampled control: one period of the controller at a time.
 //
-//   extension -> anti-alias filter -> converter -> position loop -> pulse width -> dead time -> plant, for one period
+//   sensor -> anti-alias filter -> converter -> position loop -> pulse width -> dead time -> plant, for one period
 //
-// The command is held over a period and reaches the valve command_delay (and what the tube delays) later, which may fall
+// The command is held over a period and reaches its valve command_delay (and what its tube delays) later, which may fall
 // into the middle of a period: the integration stops there, so that a jump is never inside a step. The electronics can
-// be left out as a whole; then the controller sees the extension and the valve its command.
+// be left out as a whole; then the controller sees what the position sensor says (plant_sensors.hpp) and the valve its
+// command.
 //
 // The same loop serves one actuator on the bench and three under the platform, and, open, the tank of the flow test. It
 // allocates nothing.
@@ -13,9 +14,9 @@
 #include "sms/bench.hpp"
 #include "sms/electronics.hpp"
 #include "sms/integrate_adaptive.hpp"
-#include "sms/platform.hpp"
+#include "sms/integrate_stiff.hpp"
+#include "sms/plant_sensors.hpp"
 #include "sms/position_loop.hpp"
-#include "sms/tank.hpp"
 
 namespace sms {
 
@@ -35,11 +36,11 @@ struct PlantSystem {
   }
 };
 
-// Between one extension and its controller.
+// Between a position sensor and its controller.
 template <typename S>
-struct ExtensionSensor {
-  S extension;  // of the last sample, m
-  S filtered;   // behind the anti-alias filter, m
+struct AntiAlias {
+  S reading;   // of the last sample, m
+  S filtered;  // m
 };
 
 template <typename S>
@@ -55,6 +56,17 @@ template <typename S>
 Electronics<S> make_electronics(const Params<S>& p, bool present) {
   const S corner = angular_frequency(p.anti_alias_frequency);
   return {present, position_converter(p), command_converter(p), corner, low_pass_weight(corner, p.control_period)};
+}
+
+// Parameters of one of its actuators, or of the tank.
+template <typename Plant>
+const Params<typename Plant::Scalar>& params_of(const Plant& plant, int) {
+  return plant.params;
+}
+
+template <typename S>
+const Params<S>& params_of(const Platform<S>& platform, int leg) {
+  return platform.params[leg];
 }
 
 constexpr int longest_delay() { return 256; }  // periods
@@ -75,13 +87,15 @@ struct Simulation {
   Run<State> run;
   S period;
   S fixed_step;  // 0: adaptive
+  bool stiff;    // fixed steps are those of integrate_stiff.hpp, not of Runge and Kutta
   PositionLoopSettings<S> settings[legs];
   Electronics<S> electronics;
-  int delay_periods;
-  S delay_rest;  // s, less than a period
+  int delay_periods[legs];  // of each command on its way to the valve
+  S delay_rest[legs];       // s, less than a period
 
+  typename SensorsOf<Plant>::Type sensors;
   PositionLoop<S> loop[legs];
-  ExtensionSensor<S> sensor[legs];
+  AntiAlias<S> filter[legs];
   DelayLine<S, longest_delay()> line[legs];
   unsigned long sample;
   S measured[legs];  // by the controller, m
@@ -99,42 +113,78 @@ sms_status begin_simulation(const typename Plant::State& state, const typename P
   s.control = step_control(state_scale(s.plant), tolerance);
   s.period = params.control_period;
   s.fixed_step = S(0);
+  s.stiff = false;
+  s.sensors = typename SensorsOf<Plant>::Type(s.plant, s.period);
   s.electronics = make_electronics(params, electronics);
-  const S delay = params.command_delay + tube_delay(params);
-  s.delay_periods = static_cast<int>(delay / s.period);
-  s.delay_rest = delay - S(s.delay_periods) * s.period;
   s.sample = 0;
-  const sms_status status = begin_run(s.system, S(0), state, s.run);
-  if (status != SMS_OK || s.delay_periods >= longest_delay()) {
-    return status == SMS_OK ? SMS_OUT_OF_RANGE : status;
-  }
+  sms_status status = begin_run(s.system, S(0), state, s.run);
   for (int i = 0; i < Plant::legs; ++i) {
-    const S extension = extension_of(state, s.system.terms, i);
+    const Params<S>& of_leg = params_of(s.plant, i);
+    const S delay = of_leg.command_delay + tube_delay(of_leg);
+    s.delay_periods[i] = static_cast<int>(delay / s.period);
+    s.delay_rest[i] = delay - S(s.delay_periods[i]) * s.period;
+    status = status == SMS_OK && s.delay_periods[i] >= longest_delay() ? SMS_OUT_OF_RANGE : status;
+  }
+  if (status != SMS_OK) {
+    return status;
+  }
+  typename SensorsOf<Plant>::Type first = s.sensors;  // the first sample looks for itself
+  first.follow(s.plant, s.run.state, s.run.rate, s.system.terms);
+  for (int i = 0; i < Plant::legs; ++i) {
+    const S reading = first.extension_reading(state, s.system.terms, i);
     s.settings[i] = position_loop_settings(params, kind, compensated);
-    s.loop[i] = position_loop_at(extension);
-    s.sensor[i] = {extension, extension};
+    s.loop[i] = position_loop_at(reading);
+    s.filter[i] = {reading, reading};
     s.line[i] = delay_line_at<longest_delay()>(params.command_offset);
-    s.measured[i] = extension;
+    s.measured[i] = reading;
     s.command[i] = params.command_offset;
     set_command(s.system.input, i, params.command_offset);
   }
   return SMS_OK;
 }
 
-// What the controller takes for the extension of one leg, m; noise in m, before the converter.
+// The sensors look at the plant, once a period, before anything is measured.
+template <typename Plant>
+void look(Simulation<Plant>& s) {
+  s.sensors.follow(s.plant, s.run.state, s.run.rate, s.system.terms);
+}
+
+// What the controller takes for the extension of one leg, m; noise in m, before the converter. After look().
 template <typename Plant>
 typename Plant::Scalar measure(Simulation<Plant>& s, const Params<typename Plant::Scalar>& params, int leg,
                                const typename Plant::Scalar& noise) {
   using S = typename Plant::Scalar;
-  const S extension = extension_of(s.run.state, s.system.terms, leg);
+  const S reading = s.sensors.extension_reading(s.run.state, s.system.terms, leg);
   if (!s.electronics.present) {
-    return extension + noise;
+    return reading + noise;
   }
-  ExtensionSensor<S>& sensor = s.sensor[leg];
-  sensor.filtered = low_pass_ramp_step(s.electronics.corner, s.period, s.electronics.weight, sensor.filtered,
-                                       sensor.extension, extension);
-  sensor.extension = extension;
-  return sampled_extension<S>(params, s.electronics.position, sensor.filtered + noise);
+  AntiAlias<S>& filter = s.filter[leg];
+  filter.filtered = low_pass_ramp_step(s.electronics.corner, s.period, s.electronics.weight, filter.filtered,
+                                       filter.reading, reading);
+  filter.reading = reading;
+  return sampled_extension<S>(params, s.electronics.position, filter.filtered + noise);
+}
+
+// So many stiff steps of size h. The run's rate is that at its state, before and after.
+template <typename Plant>
+sms_status stiff_steps(int steps, const typename Plant::Scalar& h, Simulation<Plant>& s) {
+  using S = typename Plant::Scalar;
+  using State = typename Plant::State;
+  const S g = stiff_share<S>() * h;
+  for (int i = 0; i < steps; ++i) {
+    const auto slopes = stiffness(s.plant, s.run.state, s.system.terms);
+    const auto solve = [&slopes, &g](State& rate) { solve_stiff(slopes, g, rate); };
+    const auto end_rate = [&s](const State& state, State& rate) { return s.system(state, rate); };
+    sms_status status = stiff_step(end_rate, solve, h, s.run.rate, s.run.state);
+    if (status == SMS_OK) {
+      status = s.system(s.run.state, s.run.rate);
+    }
+    if (status != SMS_OK) {
+      return status;
+    }
+  }
+  s.run.evaluations += 2ul * static_cast<unsigned long>(steps);
+  return SMS_OK;
 }
 
 // To `end` with the present input.
@@ -150,6 +200,11 @@ sms_status integrate_to(const typename Plant::Scalar& end, Simulation<Plant>& s)
   if (s.fixed_step > S(0)) {
     const int steps = static_cast<int>(ceil((end - s.run.time) / s.fixed_step * (S(1) - S(1e-6))));
     const S h = (end - s.run.time) / S(steps);
+    if (s.stiff) {
+      status = stiff_steps(steps, h, s);
+      s.run.time = status == SMS_OK ? end : s.run.time;
+      return status;
+    }
     const auto f = [&s](const S&, const typename Plant::State& state, typename Plant::State& rate) {
       return s.system(state, rate);
     };
@@ -175,6 +230,7 @@ sms_status take_sample(const Params<typename Plant::Scalar>& params, const typen
       return SMS_NOT_A_NUMBER;
     }
   }
+  look(s);
   for (int i = 0; i < Plant::legs; ++i) {
     s.measured[i] = measure(s, params, i, noise[i]);
     s.command[i] = position_loop_step(s.settings[i], s.loop[i], setpoint[i], s.measured[i]);
@@ -189,12 +245,22 @@ sms_status run_period(Simulation<Plant>& s) {
   S next[Plant::legs];
   for (int i = 0; i < Plant::legs; ++i) {
     const S sent = s.electronics.present ? pulse_width_voltage(s.electronics.command, s.command[i]) : s.command[i];
-    next[i] = delay_line_step(s.line[i], sent, s.delay_periods);
+    next[i] = delay_line_step(s.line[i], sent, s.delay_periods[i]);
   }
   const S begin = S(s.sample) * s.period;
-  sms_status status = s.delay_rest > S(0) ? integrate_to<Plant>(begin + s.delay_rest, s) : SMS_OK;
-  for (int i = 0; i < Plant::legs; ++i) {
-    set_command(s.system.input, i, next[i]);
+  sms_status status = SMS_OK;
+  // Each command when it arrives.
+  for (S arrived = S(-1), at = S(0); status == SMS_OK && at < s.period; arrived = at) {
+    at = s.period;
+    for (const S& rest : s.delay_rest) {
+      at = rest > arrived && rest < at ? rest : at;
+    }
+    status = at < s.period && at > S(0) ? integrate_to<Plant>(begin + at, s) : status;
+    for (int i = 0; i < Plant::legs; ++i) {
+      if (s.delay_rest[i] > arrived && !(s.delay_rest[i] > at)) {
+        set_command(s.system.input, i, next[i]);
+      }
+    }
   }
   status = status == SMS_OK ? integrate_to<Plant>(S(s.sample + 1) * s.period, s) : status;
   s.sample += status == SMS_OK ? 1ul : 0ul;

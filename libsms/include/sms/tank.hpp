@@ -50,42 +50,16 @@ struct Tank {
   ActuatorLaws laws;  // of valve and chamber
 };
 
-template <typename S>
-bool is_partly_warm(const Tank<S>& tank) {
-  return tank.laws.chamber == ChamberLaw::polytropic && !is_absent(tank.params.heat_share);
-}
-
-// The temperature that flows and thermometer see.
-template <typename S>
-Gas<S> tank_air(const Tank<S>& tank, const Gas<S>& gas) {
-  const Params<S>& p = tank.params;
-  if (!is_partly_warm(tank)) {
-    return gas;
-  }
-  return {gas.pressure, p.air_temperature + p.heat_share * (gas.temperature - p.air_temperature)};
-}
-
-template <typename S>
-HeatRatios<S> tank_ratios(const Tank<S>& tank) {
-  const Params<S>& p = tank.params;
-  HeatRatios<S> ratios = heat_ratios(p, tank.laws.chamber);
-  if (is_partly_warm(tank)) {
-    ratios.in += p.heat_share * (p.heat_capacity_ratio - ratios.in);
-    ratios.out += p.heat_share * (p.heat_capacity_ratio - ratios.out);
-  }
-  return ratios;
-}
-
 // What flows through the valve and past it.
 template <typename S>
 void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) {
   using std::abs;
   const Params<S>& p = tank.params;
   const S opening = valve_opening(p, state.spool.value);
-  const OpenEdges<S> edges = open_edges(p, tank.laws.valve, tank_ratios(tank), opening);
+  const OpenEdges<S> edges = open_edges(p, tank.laws.valve, heat_ratios(p, tank.laws.chamber), opening);
   const Gas<S> supply = {state.supply_pressure, p.air_temperature}, outside = {p.ambient_pressure, p.air_temperature};
   const S gain = S(1) + p.tank_flow_change;
-  t.air = tank_air(tank, state.gas);
+  t.air = seen_air(p, tank.laws.chamber, state.gas);
   t.space = tank_space(p);
   t.space.volume += tube_volume(p);
   t.feed = t.vent = S(0);
@@ -102,7 +76,7 @@ void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) 
     t.vent *= passes;
   }
   if (!is_absent(p.valve_leakage)) {
-    const IsoFlow<S> gap = {p.valve_leakage, S(0), S(2)};
+    const IsoFlow<S> gap = valve_gap(p);
     t.feed += iso_mass_flow(p, gap, supply, t.air);
     t.vent += iso_mass_flow(p, gap, t.air, outside);
   }
@@ -112,25 +86,12 @@ void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) 
   add_flow<S>(t.flow, p.chamber_leakage_lower * (outside.pressure - t.air.pressure), t.air, outside);
 }
 
-// Pa/s and K/s
-template <typename S>
-Gas<S> tank_gas_rate(const Tank<S>& tank, const TankState<S>& state, const TankTerms<S>& t) {
-  const Params<S>& p = tank.params;
-  Gas<S> rate = chamber_rate(p, tank.laws.chamber, state.gas, t.space, t.flow);
-  if (is_partly_warm(tank)) {
-    const GasRate<S> warm = energy_rates(p, state.gas, t.space, t.flow);
-    rate.pressure += p.heat_share * (warm.pressure - rate.pressure);
-    rate.temperature = warm.temperature;
-  }
-  return rate;
-}
-
 template <typename S>
 sms_status derivative(const Tank<S>& tank, const TankState<S>& state, const TankInput<S>& input, TankTerms<S>& t,
                       TankState<S>& rate) {
   const Params<S>& p = tank.params;
   fill_tank(tank, state, t);
-  rate.gas = tank_gas_rate(tank, state, t);
+  rate.gas = gas_rate(p, tank.laws.chamber, state.gas, t.air, t.space, t.flow);
   rate.spool = spool_rate(p, state.spool, input.command);
   rate.supply_pressure = reservoir_pressure_rate(p, state.supply_pressure, t.feed);
   return is_finite(rate.gas.pressure) ? SMS_OK : SMS_NOT_A_NUMBER;

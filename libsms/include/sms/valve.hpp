@@ -176,11 +176,16 @@ S edge_flow(const Params<S>& p, ValveLaw law, const IsoFlow<S>& iso, const S& ar
 
 // The gap past the lands, open at any command.
 template <typename S>
+IsoFlow<S> valve_gap(const Params<S>& p) {
+  return {p.valve_leakage, p.leakage_critical_ratio, S(2)};
+}
+
+template <typename S>
 EdgeFlows<S> leakage_flows(const Params<S>& p, const ValvePorts<S>& ports) {
   if (is_absent(p.valve_leakage)) {
     return {S(0), S(0), S(0), S(0)};
   }
-  const IsoFlow<S> gap = {p.valve_leakage, S(0), S(2)};
+  const IsoFlow<S> gap = valve_gap(p);
   return {iso_mass_flow(p, gap, ports.supply, ports.lower), iso_mass_flow(p, gap, ports.lower, ports.exhaust),
           iso_mass_flow(p, gap, ports.supply, ports.upper), iso_mass_flow(p, gap, ports.upper, ports.exhaust)};
 }

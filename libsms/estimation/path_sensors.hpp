@@ -1,8 +1,9 @@
-// What the platform's sensors see: those of its three legs (actuator_sensors.hpp), and roll and pitch.
+// What the sensors of a platform see whose pistons move along a measured path: those of its three legs
+// (plant_sensors.hpp), of the first one's reservoir, and roll and pitch.
 #pragma once
 
-#include "estimation/actuator_sensors.hpp"
 #include "estimation/platform_rates.hpp"
+#include "sms/plant_sensors.hpp"
 
 namespace sms {
 namespace estimation {
@@ -24,21 +25,26 @@ PoseSeen<S> pose_seen(const PathPoint<S>& place, const Pistons<S>& state) {
 }
 
 template <typename S>
-struct PlatformSensors {
+LegSeen<S> seen(const Pistons<S>& y, const Pistons<S>& rate, int leg) {
+  return {y.leg[leg].extension, y.leg[leg].velocity, y.leg[leg].actuator, rate.leg[leg].actuator};
+}
+
+template <typename S>
+struct PathSensors {
   // step: of the simulation, s. moved: which way the readings of extension went last, as ActuatorSensors has it.
-  PlatformSensors(const LegMachines<S>& machines, const S& step, const Vec3<double>& moved)
+  PathSensors(const LegMachines<S>& machines, const S& step, const Vec3<double>& moved)
       : leg{{machines.leg[0], step, moved(0)}, {machines.leg[1], step, moved(1)}, {machines.leg[2], step, moved(2)}},
-        roll(machines.common.sensor_lag_roll, step),
-        pitch(machines.common.sensor_lag_pitch, step) {}
+        supply(supply_pressure_sensor(machines.common), step),
+        roll(roll_sensor(machines.common), step),
+        pitch(pitch_sensor(machines.common), step) {}
 
   // The state a step after the last call, where the platform is, and the forces on the pistons.
   void follow(const LegMachines<S>& machines, const PathPoint<S>& place, const Pistons<S>& y, const Pistons<S>& rate,
               const PistonTerms<S>& t) {
     for (int i = 0; i < 3; ++i) {
-      // The sensor sits on the cylinder, and sees more of the rod where the frame yields below it.
-      leg[i].follow(machines.leg[i], y.leg[i], rate.leg[i], t.friction(i) - t.actuator[i].force);
+      leg[i].follow(machines.leg[i], seen(y, rate, i), platform_mount_force(t.actuator[i], S(t.friction(i))));
     }
-    if (roll.follows || pitch.follows) {
+    if (roll.follows() || pitch.follows()) {
       const PoseSeen<S> q = pose_seen(place, y);
       roll.follow(q.pose(0), q.rate(0));
       pitch.follow(q.pose(1), q.rate(1));
@@ -46,7 +52,7 @@ struct PlatformSensors {
   }
 
   ActuatorSensors<S> leg[3];
-  detail::FollowingSensor<S> roll, pitch;
+  Sensor<S> supply, roll, pitch;
 };
 
 }  // namespace estimation
