@@ -22,7 +22,7 @@ from sms.diagnosis.hypothesis import (
 from sms.diagnosis.localisation.ripple import find_ripple
 from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Remainder, Series
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.selection.forward_selection import Outcome, Round
+from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
 from sms.estimation.kind import Kind
 from sms.estimation.run import Run
@@ -102,6 +102,9 @@ def cause_from(
         if len(members) > 1
         else "",
         support=sum(m.support for m in members),
+        share=first.share[0],
+        share_low=first.share[1],
+        share_high=first.share[2],
         crosswise=first.cross_validated,
     )
 

@@ -21,8 +21,15 @@ from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import PARAMETERS, Parameter
 
-ALWAYS_UNCERTAIN = ("stiction_shape",)
+FLOW_MAP = tuple(n for n in PARAMETERS if n.startswith("flow_map_"))
+ALWAYS_UNCERTAIN = ("stiction_shape", *FLOW_MAP)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
+REFIT_STEPS = 3
+"""Of least squares on records that were not fitted: what is known moves little there. Run time."""
+SAME_MACHINE = 0.1
+"""Of what is declared: by how much a number may differ between a day when the machine was well and today. Judgement."""
+WIDE = 3.0
+"""Half widths that a map may be off somewhere: what is declared of a map is that of most of its values."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +93,8 @@ class Data:
     validate: Runs
     test: Runs | None = None
     """Records on which gains are reported and nothing is decided."""
+    reference: Runs | None = None
+    """Records of the same machine when it was known to be well."""
     unseen_of: dict[int, tuple[Fitted, Fitted]] = field(default_factory=dict, repr=False)
     """What `unseen` has worked out already."""
 
@@ -115,9 +124,10 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
             free[name] = (bounds.lower, bounds.upper)
         elif declared.uncertainty > 0.0:
             uncertain[name] = declared.uncertainty
+            room = declared.uncertainty * (WIDE if name in FLOW_MAP else 1.0)
             free[name] = (
-                max(bounds.lower, declared.value - declared.uncertainty),
-                min(bounds.upper, declared.value + declared.uncertainty),
+                max(bounds.lower, declared.value - room),
+                min(bounds.upper, declared.value + room),
             )
     residual, jacobian = data.identify.problem.evaluate(start, list(free))
     seen = np.linalg.norm(jacobian, axis=0) > 0.0
@@ -126,10 +136,34 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     return Hypothesis(start, movable, uncertain, table=rig.table, sample=sample)
 
 
-def fit(hypothesis: Hypothesis, runs: Runs, initial: _core.Params | None = None) -> Fitted:
+def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Fitted]:
+    """What records of the healthy machine tell of it: where its numbers lie, and how much nearer than was declared.
+
+    The others are then asked what has changed. A number is known to two standard errors, at best to a tenth of what was
+    declared: a machine is not quite the same from day to day.
+    """
+    assert data.reference is not None
+    h, healthy = hypothesis, fit(hypothesis, data.reference)
+    start, free, known = h.start.copy(), dict(h.free), dict(h.known)
+    for name in h.known:
+        start[name] = healthy.params[name]
+        width = max(2.0 * healthy.standard_error(name), SAME_MACHINE * h.known[name])
+        known[name] = min(width, h.known[name])
+        room = WIDE * known[name]
+        bounds = h.table[name]
+        free[name] = (max(bounds.lower, start[name] - room), min(bounds.upper, start[name] + room))
+    return replace(h, start=start, free=free, known=known), healthy
+
+
+def fit(
+    hypothesis: Hypothesis,
+    runs: Runs,
+    initial: _core.Params | None = None,
+    most_steps: int | None = None,
+) -> Fitted:
     """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks."""
     free = free_of(hypothesis)
-    found = runs.fit(initial or hypothesis.start, free)
+    found = runs.fit(initial or hypothesis.start, free, most_steps)
     covariance = _covariance(found, free, runs)
     held = np.array(found.at_bound, dtype=bool)
     covariance[held, :] = covariance[:, held] = 0.0
@@ -201,7 +235,7 @@ def refitted_on(fitted: Fitted, runs: Runs) -> Fitted:
     free = {n: bounds for n, bounds in h.free.items() if n not in held}
     start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
     known = {n: u for n, u in h.known.items() if n not in held}
-    return fit(replace(h, start=start, free=free, known=known), runs, fitted.params)
+    return fit(replace(h, start=start, free=free, known=known), runs, fitted.params, REFIT_STEPS)
 
 
 def sensitivities(fitted: Fitted, runs: Runs, names: list[str]) -> Array:

@@ -33,7 +33,8 @@ def split(rig: Rig, kind: Kind, runs: Sequence[Run], noise: dict[str, float]) ->
         return Runs(rig, tuple(r for r in runs if r.role == role), noise, kind)
 
     kept_out = of("test") if any(r.role == "test" for r in runs) else None
-    return Data(rig, of("identify"), of("validate"), kept_out)
+    reference = of("reference") if any(r.role == "reference" for r in runs) else None
+    return Data(rig, of("identify"), of("validate"), kept_out, reference)
 
 
 def in_blocks(data: Data) -> Data:

@@ -58,6 +58,11 @@ class Cause:
     """The measurement that would tell the members apart, empty for a single cause."""
     support: float
     """Share of 999 resamples of the windows or strokes in which the choice of its round falls on it, 0..1."""
+    share: float = 0.0
+    """Part of the baseline's mean squared error beyond the noise, on validation records, that it takes, 0..1."""
+    share_low: float = 0.0
+    share_high: float = 0.0
+    """95 percent interval of the share, over resampled windows."""
     crosswise: bool = False
     """Whether the records kept aside do not feel it: judged by how the fitted records predict each other."""
 
@@ -164,6 +169,28 @@ class Remainder:
     at each pressure), "direction" (opposite in the two directions), "extension" (along the stroke), "time" (a drift
     from stroke to stroke), and what "does not repeat"."""
     ripple: Ripple | None = None
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """What the extended model leaves of a simulated rig's error, beside the causes."""
+
+    rms: dict[str, float]
+    """Signal -> rms of the error on records it was not fitted to, in the signal's unit."""
+    floor: dict[str, float]
+    """Signal -> of that, what is noise: the declared noise and resolution, or what the records show if that is more."""
+    tolerated: dict[str, float]
+    """Signal -> rms beyond the noise up to which nothing is called wrong: a part of what all declared uncertainties make."""
+    share_of_excess: float
+    """Part of the baseline's mean squared error beyond the noise that is left, 0..1."""
+    worth_a_word: bool
+    """Whether it is more than is tolerated."""
+    equation: str
+    """In which equation most of it sits."""
+    along: str
+    """Along which signal."""
+    curve: Shape | None
+    sentence: str
 
 
 @dataclass(frozen=True)
@@ -332,7 +359,7 @@ class Diagnosis:
     gain: tuple[Gain, ...] = ()
     in_use: tuple[InUse, ...] = ()
     """What the causes mean to whoever uses the machine; empty without a cause."""
-    remainder: Remainder | None = None
+    remainder: Remainder | Unexplained | None = None
     hidden: Hidden | None = None
     """Where the baseline's error comes from, for rigs that are simulated."""
     fed: FedEquations | None = None

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.diagnosis.adequacy.hysteresis import Hysteresis
-from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, explained, lack_of_fit, small
+from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency, inconsistency
 from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
-from sms.diagnosis.adequacy.verdict import consistent, decide, inconstancy_of
+from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
 from sms.diagnosis.effects.catalogue import Effect, effects_of
@@ -27,7 +27,9 @@ from sms.diagnosis.hypothesis import (
     Fitted,
     baseline_hypothesis,
     fit,
+    from_reference,
     nuisance_of,
+    unseen,
 )
 from sms.diagnosis.localisation.empirical_term import empirical_of
 from sms.diagnosis.localisation.equation_error import fed_equations
@@ -40,18 +42,30 @@ from sms.diagnosis.result import (
     FedEquations,
     Hidden,
     NotTestable,
+    Unexplained,
     ParameterValue,
     Verdict,
 )
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.selection.forward_selection import Outcome, Progress, forward_selection
 from sms.diagnosis.selection.identifiability import identifiable
+from sms.diagnosis.selection.outcome import Outcome
+from sms.diagnosis.selection.stepwise import (
+    Left,
+    Progress,
+    energies,
+    excess,
+    left_when_well,
+    small,
+    stepwise_selection,
+    tolerated,
+)
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
 from sms.report.wording_simulated import (
     conclusion,
     nearest_in_words,
+    remainder_in_words,
     sentence,
     sentence_of_inconsistency,
     words_of_inconsistency,
@@ -68,6 +82,8 @@ class Case:
     outcome: Outcome
     before: LackOfFit
     after: LackOfFit
+    tolerated: Array
+    """(channels,): mean square beyond the noise, in its units, that is not worth a word."""
     blind: Sequence[NotTestable]
     verdict: Verdict
     inconsistency: Inconsistency | None = None
@@ -113,39 +129,31 @@ def investigate(
 ) -> Case:
     """Baseline, rounds and verdict: all that a trial needs."""
     progress("fitting the baseline", 0.05)
-    baseline = fit(baseline_hypothesis(data, effects), data.identify)
+    hypothesis, healthy = baseline_hypothesis(data, effects), None
+    if data.reference is not None:
+        hypothesis, healthy = from_reference(hypothesis, data)
+    baseline = fit(hypothesis, data.identify)
     progress("looking which effects can be seen", 0.15)
     able, blind = identifiable(baseline, data, effects)
-    before = lack_of_fit(baseline, data)
+    least = tolerated(baseline, data)
+    if healthy is not None and data.reference is not None:
+        least = left_when_well(healthy, data.reference)
 
     def enough(fitted: Fitted) -> bool:
-        left = lack_of_fit(fitted, data)
-        return small(left) and (fitted is baseline or explained(before, left))
+        return small(Left.by(fitted, data), least)
 
-    outcome = forward_selection(
-        baseline,
-        data,
-        able,
-        float(np.mean(before.floor)),
-        rng,
-        progress,
-        enough,
-    )
-    after = lack_of_fit(outcome.final, data)
-    verdict = decide(outcome, before, after)
-    found = None
-    if verdict == "unknown" or not all(
-        consistent(c[0], outcome.final, data) for c in outcome.groups
-    ):
-        found = inconsistency(baseline, data, able, before.floor)
-    other = inconstancy_of(outcome, data)
-    if outcome.groups and other is not None and verdict != "no-evidence":
-        verdict = "unknown"
-    if found is not None:
-        verdict = "data-fault"
-    if verdict in ("unknown", "data-fault"):
-        outcome = replace(outcome, named=False)
-    return Case(data, baseline, outcome, before, after, blind, verdict, found, other)
+    outcome = stepwise_selection(baseline, data, able, rng, progress, enough)
+    before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
+    adequate = enough(outcome.final)
+    found = law = None
+    if not adequate:
+        law = inconstancy_of(outcome, data)
+        if outcome.found and law is not None:
+            outcome = replace(outcome, named=False)
+        if not outcome.groups:
+            found = inconsistency(baseline, data, able, before.floor)
+    verdict = decide(outcome, adequate) if found is None else "data-fault"
+    return Case(data, baseline, outcome, before, after, least, blind, verdict, found, law)
 
 
 def complete(
@@ -182,6 +190,7 @@ def complete(
         hidden=hidden,
         fed=fed,
         hidden_left=left,
+        remainder=_unexplained(case, left or hidden),
         empirical=curve,
         noise_floor={},
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
@@ -189,6 +198,36 @@ def complete(
         series=series_of(baseline, case.final, data),
     )
     return _with_words(answer, case, hidden)
+
+
+def _unexplained(case: Case, hidden: Hidden) -> Unexplained:
+    """What the model that the answer stands for leaves; `hidden` says where that is."""
+    runs, before, after = case.data.validate, case.before, case.after
+    left = energies(runs, unseen(case.final, case.data)).mean(axis=0)
+    scale = [runs.noise[c] for c in runs.channels]
+
+    def rms(squares: Array) -> dict[str, float]:
+        return {
+            c: float(s * np.sqrt(q)) for c, s, q in zip(runs.channels, scale, squares, strict=True)
+        }
+
+    was = excess(energies(runs, unseen(case.baseline, case.data)))
+    share = excess(energies(runs, unseen(case.final, case.data))) / max(was, 1e-12)
+    floor = np.maximum(np.minimum(before.floor, after.floor), 1.0)
+    worth_a_word = not small(Left.by(case.final, case.data), case.tolerated)
+    found = Unexplained(
+        rms(left),
+        rms(floor),
+        rms(case.tolerated),
+        float(np.clip(share, 0.0, 1.0)),
+        worth_a_word,
+        hidden.equation,
+        hidden.shape.signal,
+        hidden.shape,
+        "",
+    )
+    units = {c: runs.kind.units[c] for c in runs.channels}
+    return replace(found, sentence=remainder_in_words(found, units))
 
 
 def _with_words(answer: Diagnosis, case: Case, hidden: Hidden) -> Diagnosis:
@@ -212,6 +251,9 @@ def _with_words(answer: Diagnosis, case: Case, hidden: Hidden) -> Diagnosis:
         case.after,
         nearest,
     )
+    left = answer.remainder
+    if isinstance(left, Unexplained) and answer.causes:
+        concluded = (*concluded, left.sentence)
     return replace(answer, findings=findings, sentence=said, conclusion=concluded)
 
 

@@ -98,6 +98,24 @@ IDLE = 0.02
 Unless it takes half of what the others leave: beside a very large cause a second one is small and real.
 """
 
+# ---- Stepwise selection on simulated rigs -----------------------------------------------------------
+
+FINITE_STEPS = (0.01, 0.05, 0.2)
+"""Of the way to either end of the plausible range: the sizes at which an effect is tried with all else held. Run time:
+a factor of five apart, and least squares goes on from the best."""
+TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3
+"""Effects that are fitted in a round, by what finite steps and by what linear steps promise. Run time."""
+LEAST_SHARE = 0.5
+"""Of what is left beyond the noise: what a cause must take. Judgement: most of it."""
+TOLERATED = 0.1
+"""Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description whose
+numbers are known to a few percent, which then fits ten times better than these numbers promise, is not called wrong."""
+WELL, LEAST_OF_NOISE = 1.5, 0.1
+"""Of the mean square that the model leaves on records of the healthy machine, and of the noise: what it may leave on
+others. Judgement: the machine is the same, the runs are not."""
+TWINS = 0.9
+"""Cosine of two changes of all predictions from which two effects are one class, if neither is worse. Judgement."""
+
 # ---- Lack of fit -----------------------------------------------------------------------------------
 
 LEFT = 0.1

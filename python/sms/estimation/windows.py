@@ -18,7 +18,7 @@ from sms.arrays import Array, Index
 from sms.estimation.block_statistics import merge_windows
 from sms.estimation.divergence import WithinNumbers
 from sms.estimation.kind import Kind
-from sms.estimation.least_squares import Free, Solution
+from sms.estimation.least_squares import Free, Solution, fit_windows
 from sms.estimation.problem import WindowProblem
 from sms.estimation.run import Run
 from sms.io.rig import Rig
@@ -57,9 +57,13 @@ class Runs:
         """The same where it does not diverge."""
         return WithinNumbers(self.simulation) if self.whitened else self.simulation
 
-    def fit(self, initial: _core.Params, free: list[Free]) -> Solution:
-        """Least squares over the free parameters."""
-        return self.kind.solve(self.problem, initial, free)
+    def fit(
+        self, initial: _core.Params, free: list[Free], most_steps: int | None = None
+    ) -> Solution:
+        """Least squares over the free parameters, of a simulated rig in at most so many steps."""
+        if most_steps is None or not self.whitened:
+            return self.kind.solve(self.problem, initial, free)
+        return fit_windows(self.problem, initial, free, most_steps)
 
     @cached_property
     def whole(self) -> Runs:

@@ -32,7 +32,7 @@ from sms.io.signals import KINDS, SIGNAL_UNITS, column_name, is_pressure, with_c
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 
-Role = Literal["identify", "validate", "test"]
+Role = Literal["identify", "validate", "test", "reference"]
 
 
 @dataclass(frozen=True)

@@ -108,7 +108,7 @@ class RecordTable(Table):
     """One entry of [[records]]."""
 
     file: str
-    role: Literal["identify", "validate", "test"]
+    role: Literal["identify", "validate", "test", "reference"]
     name: str | None = None
     conditions: dict[str, TextOrNumber] = Field(default_factory=dict)
 

@@ -10,7 +10,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from sms.diagnosis.result import Cause, Diagnosis, Gain, ParameterValue, Remainder
+from sms.diagnosis.result import Cause, Diagnosis, Gain, ParameterValue, Remainder, Unexplained
 from sms.report.verdict import VERDICT_WORDS, is_shift, parameter_text
 from sms.report.wording import INSENSITIVE, arranged
 from sms.units_display import (
@@ -168,7 +168,8 @@ def _notes(diagnosis: Diagnosis) -> Padding | None:
     if diagnosis.command:
         table.add_row("Command", diagnosis.command)
     if diagnosis.remainder is not None:
-        table.add_row("Left", _left(diagnosis.remainder))
+        left = diagnosis.remainder
+        table.add_row("Left", left.sentence if isinstance(left, Unexplained) else _left(left))
     if diagnosis.not_testable:
         tried = {c.effect for c in diagnosis.candidates}
         blind = [n.effect for n in diagnosis.not_testable if n.effect not in tried]

@@ -10,7 +10,15 @@ from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.localisation.unknown_inputs import alike
-from sms.diagnosis.result import Cause, FedEquations, Finding, Gain, Hidden, Verdict
+from sms.diagnosis.result import (
+    Cause,
+    FedEquations,
+    Finding,
+    Gain,
+    Hidden,
+    Unexplained,
+    Verdict,
+)
 from sms.parameters import Parameter
 from sms.report.wording import capital, chosen_again, explained, judged_by_cross_validation
 from sms.units_display import format_aligned, format_percent, format_quantity
@@ -21,8 +29,8 @@ def sentence(verdict: Verdict, causes: Sequence[Cause], hidden: Hidden) -> str:
     """What a person reads first."""
     if verdict == "no-evidence":
         return (
-            "No evidence that the simulation is wrong: within its declared uncertainties the model explains these "
-            "records down to their noise."
+            "No evidence that the simulation is wrong: what it leaves is within what the declared uncertainties make "
+            "tolerable."
         )
     if verdict == "unknown":
         return (
@@ -55,6 +63,23 @@ def words_of_inconsistency(found: Inconsistency, rig: str) -> Finding:
         f"the records contradict each other: with {found.effect.title}, {name} would be {each}",
         "find out what was changed between the runs and state it as their conditions, or leave out the one at odds",
     )
+
+
+def remainder_in_words(left: Unexplained, units: Mapping[str, str]) -> str:
+    """What is left beside the causes: of the signal that is worst off, against noise and tolerance, and where."""
+    beyond = {s: max(left.rms[s] ** 2 - left.floor[s] ** 2, 0.0) ** 0.5 for s in left.rms}
+    worst = max(beyond, key=lambda s: beyond[s] / max(left.tolerated[s], 1e-300))
+    size, noise, least = format_aligned(
+        [left.rms[worst], left.floor[worst], left.tolerated[worst]], units[worst]
+    )
+    said = (
+        f"What is left on the validation records, most of it in {spaced(worst)}: {size} rms against a noise of {noise}, "
+        f"{format_percent(left.share_of_excess)} of the error beyond the noise that there was"
+    )
+    if not left.worth_a_word:
+        return f"{said}; that is within what the declared uncertainties make tolerable ({least})."
+    along = spaced(left.along.split(" [")[0])
+    return f"{said}. It sits in {block_in_words(left.equation)}, along {along}."
 
 
 def block_in_words(equation: str) -> str:

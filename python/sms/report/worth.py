@@ -163,7 +163,7 @@ def remainder(diagnosis: Diagnosis) -> str:
         )
     )
     noise = f"<p>The measurement itself scatters by {esc(floors)} (RMS).</p>" if floors else ""
-    if left is None:
+    if not isinstance(left, Remainder):
         return section("left", title, empty("The remainder was not examined.") + noise)
     sentence = (
         f"{format_quantity(left.rms, left.unit)} RMS is unexplained on the validate records: "

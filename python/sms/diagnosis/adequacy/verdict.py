@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from sms.diagnosis.adequacy.hysteresis import Hysteresis, hysteresis
-from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, explained, small
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy, inconstancy
-from sms.diagnosis.adequacy.record_consistency import differ
-from sms.diagnosis.adequacy.subset_estimates import record_by_record
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.selection.forward_selection import Outcome
+from sms.diagnosis.selection.outcome import Outcome
 
 
 def inconstancy_of(outcome: Outcome, data: Data) -> Inconstancy | Hysteresis | None:
@@ -29,18 +26,10 @@ def _not_as_named(member: Trial, fitted: Fitted, data: Data) -> Inconstancy | Hy
     return inconstancy(fitted, member.effect, data) or hysteresis(fitted, member.effect, data)
 
 
-def consistent(cause: Trial, final: Fitted, data: Data) -> bool:
-    """Whether the records agree on a cause's size."""
-    each = record_by_record(final, cause.effect, data)
-    return not differ(list(each.values()), data.rig.declared(cause.effect.parameters[0]).value)
-
-
-def decide(outcome: Outcome, before: LackOfFit, after: LackOfFit) -> Verdict:
-    """One of the verdicts, data-fault aside."""
-    if small(before):
-        return "no-evidence"
-    if not outcome.groups or not explained(before, after):
-        return "unknown"
+def decide(outcome: Outcome, adequate: bool) -> Verdict:
+    """One of the verdicts, data-fault aside: the causes that stand, whatever they leave; else whether much is wrong."""
+    if not outcome.groups:
+        return "no-evidence" if adequate else "unknown"
     if len(outcome.groups) > 1:
         return "combination"
     return "cause" if len(outcome.groups[0]) == 1 else "class"

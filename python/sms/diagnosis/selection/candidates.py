@@ -53,6 +53,12 @@ class Trial:
     """(rows,) squared residuals on the identify records, where both count in the comparison of rivals."""
     support: float = 0.0
     """Share of resamples of the windows or strokes in which it is the best of its round."""
+    seen_share: float = 0.0
+    """Share of what the model before it leaves beyond the noise, on the records it was fitted to; `gain` on the others."""
+    lower: float = 0.0
+    """By how much it lowers the sum over windows and signals of the logarithm of what is left."""
+    share: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Share of the baseline's error beyond the noise that it takes on validation records, and its 95 percent interval."""
     cross_validated: bool = False
     """Whether the validation records are insensitive to it: judged on the fitted ones (cross_validation.py)."""
 
@@ -85,14 +91,14 @@ def score_effects(
     nuisance = nuisance_of(current)
     columns = raw_columns(current, data.identify, effects)
     sensitivity = project(nuisance, columns, [e.parameters[0] for e in effects])
-    room = np.array([_room(e, current, data.rig) for e in effects])
+    room = np.array([room_of(e, current, data.rig) for e in effects])
     allowed = np.column_stack([room[:, 0] < 0.0, room[:, 1] > 0.0])
     return score_tests(
         sensitivity, nuisance, current.fit.residual, data.identify.block, allowed, rng
     )
 
 
-def _room(effect: Effect, current: Fitted, rig: Rig) -> tuple[float, float]:
+def room_of(effect: Effect, current: Fitted, rig: Rig) -> tuple[float, float]:
     """By how much the effect's parameter may still fall (negative), and rise."""
     name = effect.parameters[0]
     low, high = effect.plausible_range(rig.declared(common_parameter(name)).value)
@@ -105,7 +111,7 @@ def _try_on_runs(
 ) -> list[Trial]:
     """All effects are screened; those that speak loudest are fitted in full."""
     found = score_effects(current, data, effects, rng)
-    room = np.array([_room(e, current, data.rig) for e in effects])
+    room = np.array([room_of(e, current, data.rig) for e in effects])
     promise = found.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     before = unseen(current, data) ** 2
     here = float(np.sum(current.fit.residual**2))

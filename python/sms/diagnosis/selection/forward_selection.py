@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,37 +11,13 @@ from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, residual_of, unseen
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.selection.backward_elimination import backward_elimination
-from sms.diagnosis.selection.candidates import Trial, try_effects
+from sms.diagnosis.selection.candidates import try_effects
+from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.validation import Yardstick, ambiguity_group, judge
 from sms.diagnosis.thresholds import MOST_CAUSES, UNKNOWN_CHANCE, UNKNOWN_OF_NOISE, UNKNOWN_SHARE
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share that is done, 0..1."""
-
-
-@dataclass(frozen=True)
-class Round:
-    """One round: every trial in it, and those that the data cannot tell from the best; or none."""
-
-    trials: list[Trial]
-    members: list[Trial]
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What the rounds brought."""
-
-    final: Fitted
-    rounds: list[Round]
-    found: list[list[Trial]]
-    """One class of trials for each cause; the first of it stands for it in the final model."""
-    named: bool = True
-    """False when so much is left that none of what was found is named."""
-
-    @property
-    def groups(self) -> list[list[Trial]]:
-        """What was found, if it is named."""
-        return self.found if self.named else []
 
 
 def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatability:

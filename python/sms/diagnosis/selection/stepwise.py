@@ -1,0 +1,360 @@
+"""Forward selection where a simulation is held against the records: which causes stand, one after another.
+
+A machine differs from every model of it, by a percent here and there, all the time and in no direction that has a name.
+So a cause is not asked to explain everything. It is asked to take most of what is left, in nearly every window, on the
+records that it was fitted to and on those that it was not. What it leaves is another question (adequacy/).
+
+How much a model leaves is counted by window and signal, in units of the noise, on a logarithmic scale: a window in which
+a piston sticks where the machine slides would outweigh all others in a sum of squares, and it says no more than they do.
+
+A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and because a linear
+step says nothing of a long way, at a ladder of finite sizes with all else held. Those that promise most are fitted, from
+the better of the two. The best joins the model with whatever cannot be told from it, and so on until nothing stands. In
+the end each cause is taken out again, and must be missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import wilcoxon
+
+from sms import _core
+from sms.arrays import Array
+from sms.diagnosis.effects.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, unseen
+from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
+from sms.diagnosis.selection.outcome import Outcome, Round
+from sms.diagnosis.thresholds import (
+    FINITE_STEPS,
+    LEAST_OF_NOISE,
+    LEAST_SHARE,
+    MOST_CAUSES,
+    SIGNIFICANT,
+    TELLS_APART,
+    TOLERATED,
+    TRIED_BY_SLOPE,
+    TRIED_BY_STEP,
+    TWINS,
+    WELL,
+)
+from sms.estimation.block_statistics import interval, resampled
+from sms.estimation.least_squares import Free, changed, fit_windows
+from sms.estimation.windows import Runs
+from sms.parameters import common_parameter
+from sms.units_display import format_quantity
+
+Progress = Callable[[str, float], None]
+"""Called with what is being done and the share that is done, 0..1."""
+
+
+# ---- how much is left ------------------------------------------------------------------------------
+
+
+def energies(runs: Runs, residual: Array) -> Array:
+    """(windows, channels): mean square of the residual (rows,), in units of the declared noise."""
+    channels = len(runs.channels)
+    first = np.array([w.row for w in runs.problem.windows])
+    samples = np.array([w.samples for w in runs.problem.windows])
+    squares = residual.reshape(-1, channels) ** 2
+    sums = np.add.reduceat(squares, first // channels, axis=0)
+    return np.asarray(sums / samples[:, None])
+
+
+@dataclass(frozen=True)
+class Left:
+    """What a model leaves, window by window: (windows, channels) on records of either role."""
+
+    identify: Array
+    validate: Array
+
+    @classmethod
+    def by(cls, fitted: Fitted, data: Data) -> Left:
+        return cls(
+            energies(data.identify, fitted.fit.residual),
+            energies(data.validate, unseen(fitted, data)),
+        )
+
+    @property
+    def logarithms(self) -> Array:
+        """(windows,): sum over the channels, the noise of a sample added, on the fitted records and then the others."""
+        return np.asarray(np.log1p(np.vstack([self.identify, self.validate])).sum(axis=1))
+
+
+def excess(energy: Array) -> float:
+    """Of (windows, channels): mean square beyond the noise, the channels' mean."""
+    return float(np.mean(np.maximum(energy.mean(axis=0) - 1.0, 0.0)))
+
+
+def tolerated(baseline: Fitted, data: Data) -> Array:
+    """(channels,): mean square, in units of the noise, that a model may leave beyond it.
+
+    All that is declared uncertain moves the predictions; TOLERATED of that is not worth a word.
+    """
+    h, runs = baseline.hypothesis, data.identify
+    uncertainty = np.array([h.known.get(n, 0.0) for n in h.free])
+    moved = np.sum((baseline.fit.jacobian * uncertainty) ** 2, axis=1)
+    by_channel = np.array([np.mean(moved[runs.channel == c]) for c in range(len(runs.channels))])
+    return np.asarray(TOLERATED**2 * by_channel)
+
+
+def small(left: Left, least: Array) -> bool:
+    """Whether what is left beyond the noise is within what is tolerated (channels,), on the records of each role."""
+    return all(
+        float(np.mean(np.maximum(e.mean(axis=0) - 1.0, 0.0) / np.maximum(least, 1e-12))) < 1.0
+        for e in (left.identify, left.validate)
+    )
+
+
+def left_when_well(healthy: Fitted, runs: Runs) -> Array:
+    """(channels,): the same from records of the healthy machine, whose own error is no fault of it.
+
+    healthy: the baseline as these records (runs) have it. One and a half times that, and a tenth of the noise at least.
+    """
+    beyond = np.maximum(energies(runs, healthy.fit.residual).mean(axis=0) - 1.0, 0.0)
+    return np.asarray(WELL * beyond + LEAST_OF_NOISE)
+
+
+# ---- one round -------------------------------------------------------------------------------------
+
+
+def try_effects(
+    current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
+) -> list[Trial]:
+    """Every effect on top of the model as it stands; those that promise most are fitted."""
+    scores = score_effects(current, data, effects, rng)
+    room = np.array([room_of(e, current, data.rig) for e in effects])
+    promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
+    here = float(np.sum(np.log1p(energies(data.identify, current.fit.residual))))
+    steps = [_best_step(e, current, data, here) for e in effects]
+    by_step = sorted(range(len(effects)), key=lambda k: -steps[k][0])[: 2 * TRIED_BY_STEP]
+    for k in by_step:
+        if steps[k][0] > 0.0:
+            steps[k] = _alone(effects[k], current, data, here, steps[k])
+    by_step = sorted(by_step, key=lambda k: -steps[k][0])[:TRIED_BY_STEP]
+    by_slope = [int(k) for k in np.argsort(-promise)[:TRIED_BY_SLOPE] if promise[k] > 0.0]
+    chosen = list(dict.fromkeys([k for k in by_step if steps[k][0] > 0.0] + by_slope))
+    before = unseen(current, data) ** 2
+    trials = []
+    for k, effect in enumerate(effects):
+        trial = Trial(effect, current, 1.0, before, identified=current.fit.residual**2)
+        if k in chosen:
+            fitted = _fitted(effect, current, data, steps[k][1], float(scores.estimate[k]), room[k])
+            trial = Trial(
+                effect,
+                fitted,
+                1.0,
+                unseen(fitted, data) ** 2,
+                identified=fitted.fit.residual**2,
+            )
+        else:
+            trial.reason = "promises less than others of this round, by slope and by finite steps"
+        trials.append(trial)
+    return trials
+
+
+def _best_step(effect: Effect, current: Fitted, data: Data, here: float) -> tuple[float, float]:
+    """By how much the best of a ladder of sizes lowers the logarithms on the identify records, and that size."""
+    name = effect.parameters[0]
+    now = current.params[name]
+    best = (0.0, now)
+    for end in room_of(effect, current, data.rig):
+        for part in FINITE_STEPS:
+            if end == 0.0:
+                continue
+            value = now + part * end
+            residual = residual_of(
+                data.identify, changed(current.params, [name], np.array([value]))
+            )
+            if not np.all(np.isfinite(residual)):
+                continue
+            gain = here - float(np.sum(np.log1p(energies(data.identify, residual))))
+            best = max(best, (gain, value))
+            if gain < -len(data.identify.problem.windows):  # worse by far: larger ones are no better
+                break
+    return best
+
+
+def _alone(
+    effect: Effect, current: Fitted, data: Data, here: float, step: tuple[float, float]
+) -> tuple[float, float]:
+    """The same after least squares over the effect's own parameters, all else held."""
+    bounds = current.hypothesis.with_effect(effect).free
+    free = [Free(n, *bounds[n], 0.0, current.params[n]) for n in effect.parameters]
+    start = changed(current.params, [effect.parameters[0]], np.array([step[1]]))
+    found = fit_windows(data.identify.problem, start, free)
+    gain = here - float(np.sum(np.log1p(energies(data.identify, found.residual))))
+    return max(step, (gain, found.params[effect.parameters[0]]))
+
+
+def _fitted(
+    effect: Effect, current: Fitted, data: Data, by_step: float, slope: float, room: Array
+) -> Fitted:
+    """The effect fitted beside all else that is free, from the better of its step and its linear estimate."""
+    name = effect.parameters[0]
+    now = current.params[name]
+    linear = now + float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
+    starts = {by_step, linear if effect.step is None else max(linear, 0.1 * effect.step)}
+    best: tuple[float, _core.Params] | None = None
+    for value in starts:
+        start = changed(current.params, [name], np.array([value]))
+        residual = residual_of(data.identify, start)
+        if np.all(np.isfinite(residual)):
+            left = float(np.sum(np.log1p(energies(data.identify, residual))))
+            if best is None or left < best[0]:
+                best = (left, start)
+    start = current.params if best is None else best[1]
+    return fit(current.hypothesis.with_effect(effect), data.identify, start)
+
+
+def judge(
+    trials: Sequence[Trial],
+    current: Fitted,
+    data: Data,
+    original: float,
+    rng: np.random.Generator,
+) -> None:
+    """Whether each trial that was fitted can be a cause; fills gain, its interval, p_value, accepted, reason.
+
+    original: what the baseline left beyond the noise on the validation records.
+    """
+    before = Left.by(current, data)
+    left_before = (excess(before.identify), excess(before.validate))
+    counts = resampled(
+        data.validate.record, data.validate.window, rng
+    )  # (draws, windows), record by record
+    weights = counts / counts.sum(axis=1, keepdims=True)
+    again = np.maximum(weights @ before.validate - 1.0, 0.0).mean(axis=1)
+    for trial in trials:
+        if trial.fitted is current:
+            continue
+        after = Left.by(trial.fitted, data)
+        left_after = (excess(after.identify), excess(after.validate))
+        shares = [1.0 - a / max(b, 1e-12) for a, b in zip(left_after, left_before, strict=True)]
+        trial.seen_share, trial.gain = shares
+        resampled_after = np.maximum(weights @ after.validate - 1.0, 0.0).mean(axis=1)
+        trial.gain_interval = interval(1.0 - resampled_after / np.maximum(again, 1e-12))
+        part = left_before[1] / max(original, 1e-12)
+        low, high = (part * g for g in trial.gain_interval)
+        trial.share = (part * trial.gain, low, high)
+        lower = before.logarithms - after.logarithms
+        trial.lower = float(lower.sum())
+        trial.p_value = min(1.0, len(trials) * float(wilcoxon(lower, alternative="greater").pvalue))
+        trial.reason = _objection(trial, data)
+        trial.accepted = not trial.reason
+
+
+def _objection(trial: Trial, data: Data) -> str:
+    """Why the trial is no cause; empty if there is nothing against it."""
+    effect, name = trial.effect, trial.effect.parameters[0]
+    value = trial.fitted.params[name]
+    low, high = effect.plausible_range(data.rig.declared(common_parameter(name)).value)
+    if not low <= value <= high:
+        said = format_quantity(value, data.rig.table[name].unit, name)
+        return f"fits only with {said}, which is not plausible"
+    if trial.p_value > SIGNIFICANT:
+        return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
+    taken = (
+        f"takes {100.0 * trial.seen_share:.0f} % of what is left on the identification records and "
+        f"{100.0 * trial.gain:.0f} % on the validation records"
+    )
+    if trial.gain_interval[0] <= 0.0:
+        return f"{taken}, where it may be chance"
+    if (1.0 - trial.seen_share) * (1.0 - trial.gain) > (1.0 - LEAST_SHARE) ** 2:
+        return taken
+    return ""
+
+
+def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+    """The best accepted trial, and those whose predictions change alike and are no worse; or none."""
+    accepted = sorted((t for t in trials if t.accepted), key=lambda t: -t.lower)
+    if not accepted:
+        return []
+    best = accepted[0]
+    left = Left.by(best.fitted, data).logarithms
+    change = _change(best, current, data)
+    members = [best]
+    for trial in accepted[1:]:
+        other = _change(trial, current, data)
+        cosine = float(change @ other) / max(
+            float(np.linalg.norm(change) * np.linalg.norm(other)), 1e-300
+        )
+        best.similarity[trial.effect.key] = trial.similarity[best.effect.key] = abs(cosine)
+        worse = Left.by(trial.fitted, data).logarithms - left
+        error = float(np.std(worse)) * np.sqrt(len(worse))
+        if cosine > TWINS and float(worse.sum()) <= TELLS_APART * error:
+            members.append(trial)
+    for trial in members:
+        trial.support = 1.0 / len(members)
+    return members
+
+
+def _change(trial: Trial, current: Fitted, data: Data) -> Array:
+    """(rows,): how the residual changes with the trial, fitted records first."""
+    return np.concatenate(
+        [
+            trial.fitted.fit.residual - current.fit.residual,
+            unseen(trial.fitted, data) - unseen(current, data),
+        ]
+    )
+
+
+# ---- all rounds ------------------------------------------------------------------------------------
+
+
+def stepwise_selection(
+    baseline: Fitted,
+    data: Data,
+    effects: Sequence[Effect],
+    rng: np.random.Generator,
+    progress: Progress,
+    enough: Callable[[Fitted], bool] = lambda fitted: False,
+) -> Outcome:
+    """Until nothing more stands; `enough` says whether a model leaves so little that nothing more is looked for."""
+    current, rounds, remaining = baseline, [], list(effects)
+    original = excess(Left.by(baseline, data).validate)
+    for number in range(1, MOST_CAUSES + 1):
+        if not remaining or enough(current):
+            break
+        progress(
+            f"round {number}: {len(remaining)} effects", 0.1 + 0.75 * number / (MOST_CAUSES + 1)
+        )
+        trials = try_effects(current, data, remaining, rng)
+        judge(trials, current, data, original, rng)
+        members = ambiguity_group(trials, current, data)
+        rounds.append(Round(trials, members))
+        if not members:
+            break
+        current = members[0].fitted
+        remaining = [e for e in remaining if e is not members[0].effect]
+    found = [r.members for r in rounds if r.members]
+    while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
+        found, current = fewer
+    return Outcome(current, rounds, found)
+
+
+def _without_one(
+    found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data
+) -> tuple[list[list[Trial]], Fitted] | None:
+    """Fewer causes and their model, where one has stood in for the others; None where each is missed.
+
+    A cause is missed if without it the others leave at least as much more as a cause has to take.
+    """
+    left = Left.by(final, data)
+    least = excess(left.identify), excess(left.validate)
+    for members in found:
+        kept = [m for m in found if m is not members]
+        hypothesis, start = baseline.hypothesis, baseline.params.copy()
+        for others in kept:
+            hypothesis = hypothesis.with_effect(others[0].effect)
+        for name in hypothesis.free:
+            start[name] = final.params[name]
+        without = fit(hypothesis, data.identify, start)
+        other = Left.by(without, data)
+        more = excess(other.identify), excess(other.validate)
+        if any(a < (1.0 - LEAST_SHARE) * b for a, b in zip(least, more, strict=True)):
+            continue
+        return kept, without
+    return None

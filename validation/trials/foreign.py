@@ -1,0 +1,225 @@
+"""`./dev trials foreign FOLDER`: data sets of another simulator, whose truth lies beside them in `keys/`.
+
+That simulator shares no code with this repository and is nobody's model exactly: its flow is off by a smooth error over the
+opening, its numbers lie anywhere within what the rig files declare. A set is diagnosed blind, then its key is opened. An
+answer is right when every hidden effect is in a named cause, or in a class of at most three, and nothing else is named;
+on a healthy machine when nothing is named; on an effect outside the catalogue when the verdict is `unknown` and nothing is
+named.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from scipy.stats import beta
+from sms.diagnosis import Diagnosis, diagnose
+from sms.diagnosis.result import Cause, Member
+from sms.io.errors import InputError
+from sms.io.write import write_text_atomically
+
+from validation.trials.scoring import LARGEST_CLASS
+
+SIZES: dict[str, tuple[str, float]] = {
+    "extra_lap_each_side_V": ("dead_band_change", 0.0),
+    "true_centre_V": ("valve_centre", 0.0),
+    "C_leak_m3_s_Pa": ("valve_leakage", 0.0),
+    "sigma_N_s_m": ("viscous_friction", 0.0),
+    "bench_mass_kg": ("moving_mass", 0.0),
+    "recording_delay_s": ("clock_skew_extension", 0.0),
+    "offset_m": ("sensor_offset_extension", 0.0),
+    "gain": ("sensor_gain_extension", -1.0),
+}
+"""A key's number -> the parameter that has the same meaning here, and what is added to it. Others are laws of that
+simulator's own, without a parameter here."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One set, diagnosed and scored."""
+
+    set: str
+    scope: str
+    hidden: list[str]
+    verdict: str
+    named: list[list[str]]
+    """Effect ids of each cause's members."""
+    right: bool
+    wrong_name: bool
+    gain: float | None
+    """Share of the mean squared error on validation records that the extended model takes; None without a cause."""
+    within: bool | None
+    """Whether the true size lies within the stated 95 % interval; None where nothing can be compared."""
+    seconds: float
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command(
+        epilog="Example: **./dev trials foreign ../shared/foreign --reference --json foreign.json**."
+    )(foreign)
+
+
+def foreign(
+    folder: Annotated[Path, typer.Argument(help="Folder with setNN/ and keys/setNN.json.")],
+    reference: Annotated[
+        bool, typer.Option("--reference", help="With records of the machine when it was well.")
+    ] = False,
+    as_json: Annotated[
+        Path | None, typer.Option("--json", help="File for shares and answers, for programs.")
+    ] = None,
+    only: Annotated[str, typer.Option(help="Sets, separated by commas; all if left out.")] = "",
+    workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
+) -> None:
+    """Diagnose the data sets of another simulator blind, open the keys, and count."""
+    sets = [s for s in sets_of(folder) if not only or s in only.split(",")]
+    if not sets:
+        raise InputError(f"{folder}: there is no set with a rig.toml and a key in keys/")
+    console, answers = Console(), []
+    os.environ.update(SMS_THREADS="1", OPENBLAS_NUM_THREADS="1")
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        jobs = [pool.submit(answer_set, folder, name, reference) for name in sets]
+        for job in as_completed(jobs):
+            answer = job.result()
+            answers.append(answer)
+            said = " + ".join(" | ".join(m) for m in answer.named) or "-"
+            mark = "right" if answer.right else "WRONG NAME" if answer.wrong_name else "missed"
+            console.print(
+                f"{answer.set} {answer.scope}: hidden {' + '.join(answer.hidden)}; {answer.verdict}: {said}; "
+                f"{mark} ({answer.seconds:.0f} s)",
+                highlight=False,
+            )
+            if as_json is not None:
+                write_text_atomically(as_json, json.dumps(as_dict(answers), indent=1) + "\n")
+    console.print(table(answers))
+
+
+def sets_of(folder: Path) -> list[str]:
+    """The names of the sets that have a key."""
+    return sorted(k.stem for k in (folder / "keys").glob("*.json") if (folder / k.stem).is_dir())
+
+
+def answer_set(folder: Path, name: str, reference: bool) -> Answer:
+    """Diagnose one set, then open its key."""
+    file = folder / name / "rig.toml"
+    with_reference = folder / name / "rig_with_reference.toml"
+    begin = time.perf_counter()
+    answer = diagnose(with_reference if reference and with_reference.is_file() else file)
+    seconds = time.perf_counter() - begin
+    key = json.loads((folder / "keys" / f"{name}.json").read_text(encoding="utf-8"))
+    return scored(name, key, answer, seconds)
+
+
+def scored(name: str, key: dict[str, Any], answer: Diagnosis, seconds: float) -> Answer:
+    """An answer against the truth."""
+    named = [list(dict.fromkeys(c.members)) for c in answer.causes]
+    accepted = [set(group) for group in key["accepted"]]
+    hidden = [e["name"] for e in key["effects"]]
+    right, wrong = judged(accepted, named, answer.verdict)
+    gains = [1.0 - (g.extended_rms / g.baseline_rms) ** 2 for g in answer.gain]
+    return Answer(
+        name,
+        key["scope"],
+        hidden,
+        answer.verdict,
+        named,
+        right,
+        wrong,
+        sum(gains) / len(gains) if gains and named else None,
+        within(key["true_values"], answer) if right else None,
+        seconds,
+    )
+
+
+def judged(
+    accepted: Sequence[set[str]], named: Sequence[Sequence[str]], verdict: str
+) -> tuple[bool, bool]:
+    """Whether an answer is right, and whether something is named that is not there."""
+    if accepted == [{"NOTHING"}]:
+        return not named and verdict != "data-fault", bool(named)
+    if accepted == [{"UNKNOWN"}]:
+        return not named and verdict == "unknown", bool(named)
+    wrong = any(not any(set(members) & group for group in accepted) for members in named)
+    small = [set(m) for m in named if len(m) <= LARGEST_CLASS]
+    found = all(
+        any(members & group for members in small)
+        or ("DATA-FAULT" in group and verdict == "data-fault")
+        for group in accepted
+    )
+    return found and not wrong, wrong
+
+
+def within(true_values: dict[str, Any], answer: Diagnosis) -> bool | None:
+    """Whether the sizes that can be compared lie within two standard errors."""
+    inside = []
+    for number, (parameter, added) in SIZES.items():
+        if number not in true_values:
+            continue
+        owners: list[Cause | Member] = [m for c in answer.causes for m in (c, *c.alternatives)]
+        for value in (p for owner in owners for p in owner.parameters):
+            if value.name.partition(":")[0] == parameter:
+                truth = float(true_values[number]) + added
+                inside.append(abs(value.value - truth) <= 1.96 * value.standard_error)
+    return all(inside) if inside else None
+
+
+def lower_bound(count: int, of: int) -> float:
+    """One-sided 95 % bound below a share (Clopper and Pearson)."""
+    return 0.0 if count == 0 else float(beta.ppf(0.05, count, of - count + 1))
+
+
+def upper_bound(count: int, of: int) -> float:
+    """One-sided 95 % bound above a share."""
+    return 1.0 if count == of else float(beta.ppf(0.95, count + 1, of - count))
+
+
+def shares(answers: Sequence[Answer]) -> list[tuple[str, int, int, float]]:
+    """What is counted: name, count, of, and the one-sided 95 % bound on the side that matters."""
+    nothing = [a for a in answers if a.hidden == ["none"]]
+    outside = [a for a in answers if a.hidden[0].startswith("unknown_")]
+    known = [a for a in answers if a not in nothing and a not in outside]
+    sized = [a for a in known if a.within is not None]
+
+    def at_least(name: str, chosen: Sequence[bool]) -> tuple[str, int, int, float]:
+        return name, sum(chosen), len(chosen), lower_bound(sum(chosen), len(chosen))
+
+    def at_most(name: str, chosen: Sequence[bool]) -> tuple[str, int, int, float]:
+        return name, sum(chosen), len(chosen), upper_bound(sum(chosen), len(chosen))
+
+    return [
+        at_least("right cause, or a class of at most three with it", [a.right for a in known]),
+        at_most("a wrong name where something was hidden", [a.wrong_name for a in known + outside]),
+        at_most("a name on a healthy machine", [a.wrong_name for a in nothing]),
+        at_least("called unknown, hidden from outside the catalogue", [a.right for a in outside]),
+        at_least("true size within the stated 95 % interval", [bool(a.within) for a in sized]),
+    ]
+
+
+def table(answers: Sequence[Answer]) -> Table:
+    """The shares with their bounds."""
+    out = Table("", "count", "of", "share", "one-sided 95 % bound")
+    for name, count, of, bound in shares(answers):
+        share = f"{100.0 * count / of:.0f} %" if of else "-"
+        out.add_row(name, str(count), str(of), share, f"{100.0 * bound:.0f} %" if of else "-")
+    return out
+
+
+def as_dict(answers: Sequence[Answer]) -> dict[str, Any]:
+    """Shares and answers for programs."""
+    counted = [
+        {"what": name, "count": count, "of": of, "bound_95": bound}
+        for name, count, of, bound in shares(answers)
+        if of
+    ]
+    rows = [asdict(a) for a in sorted(answers, key=lambda a: a.set)]
+    return {"shares": counted, "answers": rows}
