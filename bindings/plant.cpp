@@ -1,11 +1,11 @@
 // Plants under sampled control: bench, platform and tank, a block of periods at a time.
+#include <pybind11/eigen.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
 #include <optional>
-
-#include <pybind11/eigen.h>
 
 #include "choice.hpp"
 #include "rows.hpp"
@@ -52,8 +52,7 @@ Channel make_channel(double noise, double low, double high, double resolution, c
   channel.low = low;
   channel.high = high;
   channel.resolution = resolution;
-  channel.rounding =
-      choice<Rounding>("rounding", rounding, {{"nearest", Rounding::nearest}, {"down", Rounding::down}});
+  channel.rounding = choice<Rounding>("rounding", rounding, {{"nearest", Rounding::nearest}, {"down", Rounding::down}});
   return channel;
 }
 
@@ -421,7 +420,8 @@ void add_running(py::class_<Bound>& c) {
           "why", [](const Bound& bound, int status) { return bound.why(sms_status(status)); }, py::arg("status"),
           "What a status of advance() means for this plant, in words.")
       .def("record", &Bound::record, py::arg("rows"), py::arg("channels"), py::arg("draws"),
-           "The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; draws "
+           "The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; "
+           "draws "
            "(n, readings), standard normal.")
       .def_property_readonly("columns", &Bound::columns, "What each column of a row is.")
       .def_property_readonly("readings", &Bound::readings, "The last of those columns: what the sensors say.")
@@ -444,21 +444,21 @@ void bind_plant(py::module_& m) {
   bench.def(py::init(&make_bench_simulation), py::kw_only(), py::arg("params"), py::arg("controller"),
             py::arg("valve_law"), py::arg("friction_law"), py::arg("chamber_law"), py::arg("control"),
             py::arg("compensated"), py::arg("electronics"), py::arg("extension"), py::arg("load_force"),
-            py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"),
-            py::arg("stiff") = false, py::arg("state") = py::none());
+            py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"), py::arg("stiff") = false,
+            py::arg("state") = py::none());
   add_running(bench);
   py::class_<PlatformSimulation> platform(m, "PlatformSimulation",
                                           "The platform under sampled control (simulate.hpp).");
   platform.def(py::init(&make_platform_simulation), py::kw_only(), py::arg("params"), py::arg("controller"),
                py::arg("valve_law"), py::arg("friction_law"), py::arg("chamber_law"), py::arg("masses"),
                py::arg("control"), py::arg("compensated"), py::arg("electronics"), py::arg("q"),
-               py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"),
-            py::arg("stiff") = false, py::arg("state") = py::none());
+               py::arg("mean_pressure"), py::arg("tolerance"), py::arg("step"), py::arg("stiff") = false,
+               py::arg("state") = py::none());
   add_running(platform);
   py::class_<TankSimulation> tank(m, "TankSimulation", "The tank of the flow test behind its valve (tank.hpp).");
   tank.def(py::init(&make_tank_simulation), py::kw_only(), py::arg("params"), py::arg("valve_law"),
-           py::arg("chamber_law"), py::arg("pressure"), py::arg("tolerance"), py::arg("step"),
-            py::arg("stiff") = false, py::arg("state") = py::none());
+           py::arg("chamber_law"), py::arg("pressure"), py::arg("tolerance"), py::arg("step"), py::arg("stiff") = false,
+           py::arg("state") = py::none());
   add_running(tank);
 }
 

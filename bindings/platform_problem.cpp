@@ -135,13 +135,14 @@ void bind_platform_problem(py::module_& m) {
   bind_leg_params(m);
   py::class_<est::PlatformRecord>(m, "PlatformRecord",
                                   "One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.")
-      .def(py::init(&make_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
-           py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
-           py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(),
-           py::arg("conditions") = std::map<std::string, double>(), py::arg("setpoint") = Eigen::MatrixX3d(),
-           py::arg("hold") = "linear",
-           "setpoint: of a loop that is simulated, where command may be empty: not measured. hold: what the valves have "
-           "between two samples of the commands, \"linear\" or the \"previous\" one.");
+      .def(
+          py::init(&make_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
+          py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Eigen::VectorXd(),
+          py::arg("roll") = Eigen::VectorXd(), py::arg("pitch") = Eigen::VectorXd(),
+          py::arg("conditions") = std::map<std::string, double>(), py::arg("setpoint") = Eigen::MatrixX3d(),
+          py::arg("hold") = "linear",
+          "setpoint: of a loop that is simulated, where command may be empty: not measured. hold: what the valves have "
+          "between two samples of the commands, \"linear\" or the \"previous\" one.");
   auto problem = bind_shooting_problem<est::PlatformPlant>(m, "PlatformProblem");
   bind_evaluate<PlatformProblem>(problem);
   problem.def(

@@ -90,7 +90,8 @@ void bind_state(py::class_<Problem, est::Problem>& problem) {
         return p.plant().state(params, p.windows().at(window), p.found(window));
       },
       py::arg("params"), py::arg("window"),
-      "State of the plant where a window begins, at the initial state found last; simulate_bench and simulate_tank go on "
+      "State of the plant where a window begins, at the initial state found last; simulate_bench and simulate_tank go "
+      "on "
       "from it.");
 }
 
@@ -105,11 +106,11 @@ void bind_bench(py::module_& m) {
   auto bench = bind_shooting_problem<est::BenchPlant, est::Problem>(m, "BenchProblem");
   bind_state(bench);
   bench.def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
-           py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
-           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
-           py::arg("threads") = 1,
-           "noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and "
-           "supply_pressure. Hidden inputs: a force, N, and flows into either chamber, kg/s.");
+            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+            py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
+            py::arg("threads") = 1,
+            "noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and "
+            "supply_pressure. Hidden inputs: a force, N, and flows into either chamber, kg/s.");
   bind_shooting_problem<est::BenchLoopPlant, est::Problem>(m, "BenchLoopProblem")
       .def(py::init(&make_bench_loop_problem), py::kw_only(), py::arg("records"), py::arg("noise"), py::arg("said"),
            py::arg("law") = "pid", py::arg("compensated") = true, py::arg("electronics") = false,

@@ -195,7 +195,8 @@ void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, 
         rates(k + double(i + 1) / steps, moved, there);
         return SMS_OK;
       };
-      stiff_step(end_rate, [&](BenchState<S>& k1) { solve_stiff(slopes, g, k1); }, h, rate, state);
+      stiff_step(
+          end_rate, [&](BenchState<S>& k1) { solve_stiff(slopes, g, k1); }, h, rate, state);
     }
   }
 }

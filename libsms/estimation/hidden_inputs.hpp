@@ -23,7 +23,9 @@ class HiddenInputs {
   }
 
   // From input number `first` on.
-  HiddenInputs from(int first) const { return {values_ == nullptr ? nullptr : values_ + first * knots_, knots_, samples_}; }
+  HiddenInputs from(int first) const {
+    return {values_ == nullptr ? nullptr : values_ + first * knots_, knots_, samples_};
+  }
 
  private:
   const S* values_;

@@ -98,7 +98,8 @@ class PlatformPlant {
   MeasuredMotion motion(const Params<double> (&leg)[3], const Window& window) const;
 
   template <typename S>
-  S* readings(const PlatformRecord& record, int sample, const PathSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state, const Pistons<S>& rate, S* out) const;
+  S* readings(const PlatformRecord& record, int sample, const PathSensors<S>& sensors, const PathPoint<S>& place,
+              const Pistons<S>& state, const Pistons<S>& rate, S* out) const;
 
   std::vector<PlatformRecord> records_;
   std::vector<MeasuredMotion> measured_;  // one a record, smoothed
@@ -111,8 +112,8 @@ class PlatformPlant {
 };
 
 template <typename S>
-S* PlatformPlant::readings(const PlatformRecord& record, int sample, const PathSensors<S>& sensors, const PathPoint<S>& place, const Pistons<S>& state,
-                           const Pistons<S>& rate, S* out) const {
+S* PlatformPlant::readings(const PlatformRecord& record, int sample, const PathSensors<S>& sensors,
+                           const PathPoint<S>& place, const Pistons<S>& state, const Pistons<S>& rate, S* out) const {
   const auto error = [&](const Sensor<S>& sensor, const S& value, const S& slope, const auto& measured, double noise) {
     int late;
     const S reading = detail::logged(sensor, value, slope, record.step, &late);
@@ -225,8 +226,8 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
       }
       ActuatorStiffness<S> slopes[3];
       for (int i = 0; i < 3; ++i) {
-        slopes[i] = actuator_stiffness<S>(machines.leg[i], laws_.friction, S(path.points[static_cast<std::size_t>(k)].mass(i, i)),
-                                           t.actuator[i]);
+        slopes[i] = actuator_stiffness<S>(machines.leg[i], laws_.friction,
+                                          S(path.points[static_cast<std::size_t>(k)].mass(i, i)), t.actuator[i]);
       }
       const auto solve = [&](Pistons<S>& y) {
         for (int i = 0; i < 3; ++i) {

@@ -172,7 +172,8 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
         rates(k + double(i + 1) / steps, moved, there);
         return SMS_OK;
       };
-      stiff_step(end_rate, [&](TankState<S>& y) { solve_stiff(slopes, g, y); }, h, rate, state);
+      stiff_step(
+          end_rate, [&](TankState<S>& y) { solve_stiff(slopes, g, y); }, h, rate, state);
     }
   }
 }

@@ -14,10 +14,10 @@ namespace firmware {
 template <typename Use>
 void each_pressure(const Simulation<Platform<double>>& s, const Use& use) {
   const auto visit = [&use](const char* name, int leg, const Sensor<double>& sensor, double value, double rate) {
-    const int channel = std::strcmp(name, "chamber_pressure_lower") == 0 ? lower_chambers + leg - 1
+    const int channel = std::strcmp(name, "chamber_pressure_lower") == 0   ? lower_chambers + leg - 1
                         : std::strcmp(name, "chamber_pressure_upper") == 0 ? upper_chambers + leg - 1
-                        : std::strcmp(name, "supply_pressure") == 0 ? int(supply_channel)
-                                                                        : -1;
+                        : std::strcmp(name, "supply_pressure") == 0        ? int(supply_channel)
+                                                                           : -1;
     if (channel >= 0) {
       use(channel, sensor.reading(value, rate));
     }

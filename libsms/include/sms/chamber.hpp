@@ -222,8 +222,8 @@ HeatRatios<S> heat_ratios(const Params<S>& p, ChamberLaw law) {
 
 // Pa/s and K/s of a chamber whose flows see `seen`.
 template <typename S>
-Gas<S> gas_rate(const Params<S>& p, ChamberLaw law, const Gas<S>& gas, const Gas<S>& seen,
-                const ChamberSpace<S>& space, const ChamberFlow<S>& flow) {
+Gas<S> gas_rate(const Params<S>& p, ChamberLaw law, const Gas<S>& gas, const Gas<S>& seen, const ChamberSpace<S>& space,
+                const ChamberFlow<S>& flow) {
   Gas<S> rate = chamber_rate(p, law, seen, space, flow);
   if (is_partly_warm(p, law)) {
     const GasRate<S> warm = energy_rates(p, gas, space, flow);

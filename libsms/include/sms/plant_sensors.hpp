@@ -49,7 +49,8 @@ class ActuatorSensors {
     }
     begun_ = true;
     leg.eye = eye_;
-#define SMS_LEG_SENSOR(name, unit, zero, label, value, rate_, lag, clock, datum, low, high) name##_.follow(value, rate_);
+#define SMS_LEG_SENSOR(name, unit, zero, label, value, rate_, lag, clock, datum, low, high) \
+  name##_.follow(value, rate_);
 #include "sms/signals.def"
   }
 
@@ -133,7 +134,8 @@ class PlatformSensors {
   void follow(const Platform<S>& platform, const PlatformState<S>& state, const PlatformState<S>& rate,
               const PlatformTerms<S>& t) {
     for (int i = 0; i < 3; ++i) {
-      leg_[i].follow(platform.params[i], seen(state, rate, t, i), platform_mount_force(t.actuator[i], S(t.friction(i))));
+      leg_[i].follow(platform.params[i], seen(state, rate, t, i),
+                     platform_mount_force(t.actuator[i], S(t.friction(i))));
     }
     supply_.follow(state.actuator[0].supply_pressure, rate.actuator[0].supply_pressure);
     roll_.follow(state.q(0), state.rate(0));
@@ -154,7 +156,8 @@ class PlatformSensors {
   }
 
  private:
-  static LegSeen<S> seen(const PlatformState<S>& state, const PlatformState<S>& rate, const PlatformTerms<S>& t, int i) {
+  static LegSeen<S> seen(const PlatformState<S>& state, const PlatformState<S>& rate, const PlatformTerms<S>& t,
+                         int i) {
     return {t.extension(i), t.dynamics.motion.extension_rate(i), state.actuator[i], rate.actuator[i]};
   }
   ActuatorSensors<S> leg_[3];

@@ -157,7 +157,7 @@ S rounded(const S& value, const S& step, Rounding rounding) {
 // What a logger's channel makes of a reading; as it stands here: nothing.
 template <typename S>
 struct Channel {
-  S noise = S(0);  // standard deviation, in the signal's unit
+  S noise = S(0);                            // standard deviation, in the signal's unit
   S low = std::numeric_limits<S>::lowest();  // ends of the range, where the reading stays
   S high = std::numeric_limits<S>::max();
   S resolution = S(0);  // step of its converter
