@@ -77,7 +77,9 @@ CLASS = Cause(
     members=("sensor_gain rod_force", "sensor_gain chamber_pressure_lower", "bore_diameter"),
     alternatives=(
         Member("sensor_gain", "chamber_pressure_lower", "gauge gain", (PRESSURE_GAIN,), 0.9998),
-        Member("bore_diameter", None, "bore of another size than stated", (BORE,), 0.97),
+        Member(
+            "bore_diameter", None, "bore diameter differs from the declared value", (BORE,), 0.97
+        ),
     ),
     parameters=(FORCE_GAIN,),
     p_value=2e-9,

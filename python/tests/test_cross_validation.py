@@ -1,4 +1,4 @@
-"""An effect that the records kept aside do not feel: judged by the fitted ones, each predicted from the others."""
+"""An effect to which the validation records are insensitive: judged by cross-validation."""
 
 from __future__ import annotations
 
@@ -64,12 +64,12 @@ def test_friction_at_high_speed_is_named_from_the_fitted_records_alone_and_said_
     assert (cause.effect, cause.crosswise) == ("exponential_friction", True)
     found = cause.parameters[0]
     assert found.value == pytest.approx(2.0, abs=max(3.0 * found.standard_error, 0.1))
-    said = [text for text in answer.conclusion if "kept aside do not feel it" in text]
+    said = [text for text in answer.conclusion if "records are insensitive to it" in text]
     assert len(said) == 1
     assert answer.next_experiment is not None
     assert 'role = "validate"' in answer.next_experiment.title
     assert "more than 0.2 m/s" in answer.next_experiment.purpose
-    assert "do not feel it" in report_html(answer)
+    assert "records are insensitive to it" in report_html(answer)
     assert not any("the error within a window falls" in text for text in answer.conclusion)
 
 
@@ -85,4 +85,4 @@ def test_what_the_fitted_records_disagree_on_is_not_named(
     answer = diagnose(rig)
     assert (answer.verdict, answer.causes) == ("unknown", ())
     (tried,) = [c for c in answer.candidates if c.effect == "exponential_friction"]
-    assert tried.reason.startswith("the records it has not seen do not feel it, and ")
+    assert tried.reason.startswith("the validation records are insensitive to it, and ")

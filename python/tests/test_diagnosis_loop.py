@@ -162,8 +162,8 @@ def test_a_platforms_records_ask_for_the_gain_they_were_made_with(
 def test_a_loop_without_a_recorded_command_is_healthy(tmp_path: Path) -> None:
     answer = diagnose(write_bench(tmp_path, 2, {}, in_loop=True, command=False))
     assert (answer.verdict, answer.causes, answer.fed) == ("no-evidence", (), None)
-    assert "simulated: it makes the valve's command" in answer.command
-    assert "held against" not in answer.command
+    assert "simulated: it computes the valve's command" in answer.command
+    assert "compared with" not in answer.command
 
 
 def names_the_gain(answer: Diagnosis, gain: float) -> str:
@@ -185,7 +185,7 @@ def test_a_gain_that_is_not_as_said_is_named_with_its_value(tmp_path: Path) -> N
     assert equation == "command"
     for page in (printed(answer), report_html(answer)):
         assert "Closed loop, its controller (PID) simulated" in page
-        assert "the recorded command is held against" in page
+        assert "the recorded command is compared with" in page
 
 
 @pytest.mark.full

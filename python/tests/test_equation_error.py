@@ -299,7 +299,7 @@ def pointing_to(equation: str) -> Hidden:
 
 def test_both_ways_in_words() -> None:
     fed = made_up(("force", 0.7, 0.6, 0.8), ("flow of the lower chamber", 0.3, 0.2, 0.4))
-    assert "the two ways agree" in two_ways(pointing_to("force"), fed)
+    assert "the two methods agree" in two_ways(pointing_to("force"), fed)
     apart = two_ways(pointing_to("flow of the lower chamber"), fed)
     assert "The two ways point to different equations: then a reading is suspect" in apart
     reading = two_ways(pointing_to("reading of extension"), fed)
@@ -319,4 +319,4 @@ def test_a_hidden_force_in_all_legs_is_that_of_each() -> None:
 def test_the_report_shows_the_second_way() -> None:
     fed = made_up(("force", 0.7, 0.6, 0.8), ("flow of the lower chamber", 0.3, 0.2, 0.4))
     text = _fed(fed, pointing_to("force"))
-    assert 'id="fed"' in text and "the two ways agree" in text and "70 %" in text
+    assert 'id="fed"' in text and "the two methods agree" in text and "70 %" in text

@@ -63,7 +63,7 @@ def test_of_three_legs_each_counts_by_its_own_pressure(tmp_path: Path) -> None:
 # ---- when a cause acts ---------------------------------------------------------------------------
 
 
-def test_a_footprint_is_that_of_hidden_inputs_and_its_parts_add_up(tmp_path: Path) -> None:
+def test_a_sensitivity_is_that_of_unknown_inputs_and_its_parts_add_up(tmp_path: Path) -> None:
     print(f"seed {SEED}")
     leak = "fitting_leakage of lower"
     data, fitted = fitted_to(tmp_path, "tank", "fitting_leakage", SEED % 10_000, leak)

@@ -64,5 +64,5 @@ def test_the_page_tells_what_is_wrong_and_what_it_means_in_use() -> None:
     told = page[page.index('id="symptoms"') : page.index('id="causes"')]
     assert "5 to 6 s" in told and "below 4 Hz" in told and "44" in told
     assert told.index("Extension") < told.index("Supply pressure")
-    assert "no more than noise" in told
+    assert "within the noise" in told
     assert "2.00 Hz" in page and "2.50 Hz" in page and "+25" in page

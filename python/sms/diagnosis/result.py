@@ -64,7 +64,7 @@ class Cause:
     share_high: float = 0.0
     """95 percent interval of the share, over resampled windows."""
     crosswise: bool = False
-    """Whether the records kept aside do not feel it: judged by how the fitted records predict each other."""
+    """Whether the validation records are insensitive to it: judged by cross-validation within the identify records."""
 
 
 @dataclass(frozen=True)

@@ -42,8 +42,8 @@ from sms.diagnosis.result import (
     FedEquations,
     Hidden,
     NotTestable,
-    Unexplained,
     ParameterValue,
+    Unexplained,
     Verdict,
 )
 from sms.diagnosis.selection.candidates import Trial
@@ -176,7 +176,7 @@ def complete(
         curve = empirical_of(baseline, data, hidden.shape, case.before.floor, rng)
     progress("choosing the next experiment", 0.9)
     classes = [[m.effect for m in members] for members in case.outcome.groups]
-    unfelt = [members[0].effect for members in case.outcome.groups if members[0].cross_validated]
+    unseen = [members[0].effect for members in case.outcome.groups if members[0].cross_validated]
     start = baseline.hypothesis.start
     answer = replace(
         blank,
@@ -194,7 +194,7 @@ def complete(
         empirical=curve,
         noise_floor={},
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
-        next_experiment=next_experiment(case.verdict, classes, final, data, hidden, unfelt),
+        next_experiment=next_experiment(case.verdict, classes, final, data, hidden, unseen),
         series=series_of(baseline, case.final, data),
     )
     return _with_words(answer, case, hidden)

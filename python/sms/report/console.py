@@ -76,8 +76,8 @@ def _causes(diagnosis: Diagnosis) -> Padding | None:
         return None
     table = _table("Causes")
     table.add_column("", no_wrap=True)
-    table.add_column("what")
-    table.add_column("how much", no_wrap=True)
+    table.add_column("cause")
+    table.add_column("estimate", no_wrap=True)
     for number, cause in enumerate(diagnosis.causes, start=1):
         for row, (title, parameters) in enumerate(_explanations(cause)):
             shown = capital(title) if row == 0 else f"or {words(title)}"
@@ -87,7 +87,7 @@ def _causes(diagnosis: Diagnosis) -> Padding | None:
                 "\n".join(parameter_text(p, is_shift(p)) for p in parameters),
             )
         if len(cause.alternatives) > 0:
-            table.add_row("", Text("cannot be told apart by these signals", style="dim italic"), "")
+            table.add_row("", Text("not distinguishable by these signals", style="dim italic"), "")
         if cause.crosswise:
             table.add_row("", Text(INSENSITIVE, style="dim italic"), "")
     return _block(table)
@@ -101,7 +101,7 @@ def _explanations(cause: Cause) -> list[tuple[str, tuple[ParameterValue, ...]]]:
 def _gain(diagnosis: Diagnosis) -> Padding | None:
     if not diagnosis.gain:
         return None
-    table = _table("RMS error on records the fit has not seen")
+    table = _table("RMS error on the validation records")
     table.add_column("record")
     table.add_column("baseline", justify="right", no_wrap=True)
     table.add_column("extended", justify="right", no_wrap=True, style="bold")
@@ -129,7 +129,7 @@ def _empirical(diagnosis: Diagnosis) -> Padding | None:
         return None
     shape = diagnosis.empirical.shape
     table = _table(
-        f"Not explained: {words(shape.equation)} as a curve over {words(shape.signal.split(' [')[0])}"
+        f"Not explained: {words(shape.equation)} as a function of {words(shape.signal.split(' [')[0])}"
     )
     table.add_column("record")
     table.add_column("baseline", justify="right", no_wrap=True)
@@ -169,14 +169,14 @@ def _notes(diagnosis: Diagnosis) -> Padding | None:
         table.add_row("Command", diagnosis.command)
     if diagnosis.remainder is not None:
         left = diagnosis.remainder
-        table.add_row("Left", left.sentence if isinstance(left, Unexplained) else _left(left))
+        table.add_row("Residual", left.sentence if isinstance(left, Unexplained) else _left(left))
     if diagnosis.not_testable:
         tried = {c.effect for c in diagnosis.candidates}
         blind = [n.effect for n in diagnosis.not_testable if n.effect not in tried]
         names = ", ".join(dict.fromkeys(words(effect) for effect in blind))
-        table.add_row("Not testable", names or "some sensors' errors, see report")
+        table.add_row("Not testable", names or "errors of some sensors, see report")
     if (plan := diagnosis.next_experiment) is not None:
-        table.add_row("Measure next", f"{capital(plan.title)}: {plan.purpose}")
+        table.add_row("Next experiment", f"{capital(plan.title)}: {plan.purpose}")
     warnings = sum(f.severity == "warning" for f in diagnosis.findings)
     if warnings:
         table.add_row("Data check", f"{warnings} warning{'s' if warnings > 1 else ''}, see report")
@@ -184,6 +184,6 @@ def _notes(diagnosis: Diagnosis) -> Padding | None:
 
 
 def _left(left: Remainder) -> str:
-    size = f"{format_quantity(left.rms, left.unit)} RMS on the records the fit has not seen"
+    size = f"{format_quantity(left.rms, left.unit)} RMS on the validation records"
     where = arranged(left)
     return f"{size}: {where}" if where else size

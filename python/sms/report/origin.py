@@ -1,4 +1,4 @@
-"""Where the error comes from, two ways: hidden terms in the simulation, and each equation fed with measurements."""
+"""Where the error arises, by two methods: unknown inputs in the simulation, and each equation fed with measurements."""
 
 from __future__ import annotations
 
@@ -22,21 +22,22 @@ def origin(diagnosis: Diagnosis) -> str:
     if hidden is None:
         return ""
     lead = (
-        "To each equation of the simulation a hidden term is added that may follow any of the signals. What it takes "
-        "alone of the error that is not noise is shown, with its 95 % interval over resampled windows. Shares need not "
-        "add up: what one equation gets wrong moves the others too. No cause is assumed here: this is a second opinion."
+        "An unknown input, a function of any of the signals, is added to each equation of the simulation in turn. "
+        "Shown is the share of the error beyond the noise that it explains alone, with its 95 % bootstrap interval "
+        "over windows. Shares need not add up to 100 %: an error in one equation propagates to the others. No cause is "
+        "assumed here; this is an independent check."
     )
     figures = _curve(
         hidden.shape, "Before the extension" if diagnosis.causes else "What is missing"
     )
     left = diagnosis.hidden_left
     if diagnosis.causes and left is not None and left.shape.share > 0.05:
-        figures += _curve(left.shape, "Of what the extended model leaves")
+        figures += _curve(left.shape, "In the residual of the extended model")
     body = f'{_shares(hidden)}<div class="cards">{figures}</div>'
     body += _empirical(diagnosis)
     if diagnosis.fed is not None:
         body += _fed(diagnosis.fed, hidden)
-    return section("origin", "Where the error comes from", body, lead)
+    return section("origin", "Where the error arises", body, lead)
 
 
 def _empirical(diagnosis: Diagnosis) -> str:
@@ -45,10 +46,11 @@ def _empirical(diagnosis: Diagnosis) -> str:
         return ""
     shape = diagnosis.empirical.shape
     text = (
-        f"Not explained: carried along as an empirical term in {words(shape.equation)} over "
-        f"{words(shape.signal.split(' [')[0])}, the curve above is worth this on records that it was not fitted to. Of "
-        f"the curve {format_percent(shape.confirmed)} is carried: so much of it one fitted record confirms of another. "
-        "It predicts; it names no cause, and away from these records it may be wrong. Its numbers are in empirical.csv."
+        f"Not explained: as an empirical term in {words(shape.equation)}, a function of "
+        f"{words(shape.signal.split(' [')[0])}, the curve above improves the validation records as follows. It is "
+        f"applied with a factor of {format_percent(shape.confirmed)}: what the identification records confirm of each "
+        "other. It predicts but names no cause, and may be wrong outside these records. Its values: "
+        "empirical.csv."
     )
     return (
         f'<p id="empirical">{esc(text)}</p>{gain_table(diagnosis.empirical.gain, "With the curve")}'
@@ -70,9 +72,9 @@ def _shares(hidden: Hidden) -> str:
 def _fed(fed: FedEquations, hidden: Hidden) -> str:
     """The other way: shares, sizes in the equations' own units, and the worst one over time."""
     lead = (
-        "The other way: nothing is simulated. Each equation is fed with the measured signals, smoothed by local cubics "
-        f"over {1e3 * fed.smoothing:g} ms, and what it leaves is averaged over {1e3 * fed.average:g} ms. Noise is that "
-        "of the signals, carried through. Shares of what is not noise add up here, for an error stays in its equation."
+        "The second method simulates nothing. Each equation is fed with the measured signals, smoothed by local cubics "
+        f"over {1e3 * fed.smoothing:g} ms, and its error is averaged over {1e3 * fed.average:g} ms. The noise is "
+        "propagated from the signals. Shares of the error beyond the noise add up here: an error stays in its equation."
     )
     scale = Scale(0.0, 1.0)
     rows = []
@@ -90,7 +92,7 @@ def _fed(fed: FedEquations, hidden: Hidden) -> str:
         )
     shown = table(
         "Each equation fed with measured signals",
-        ("Equation", "", "Share", "Off by (noise)", "Times its noise"),
+        ("Equation", "", "Share", "RMS error (noise)", "Error / noise"),
         rows,
         "shares",
     )
@@ -116,7 +118,7 @@ def _over_time(curve: ErrorCurve) -> str:
     around = [at(a, b) for a, b in zip(x, band, strict=True)]
     around += [at(a, -b) for a, b in zip(x[::-1], band[::-1], strict=True)]
     caption = (
-        f"{capital(words(curve.equation))} in '{curve.record}': the term that is missing, and twice its noise "
+        f"{capital(words(curve.equation))} in '{curve.record}': the missing term, and a band of twice its noise "
         "about zero."
     )
     drawn = (
@@ -180,9 +182,9 @@ def _curve(shape: Shape, title: str) -> str:
     upper = [at(a, v + b) for a, v, b in zip(x, y, band, strict=True)]
     lower = [at(a, v - b) for a, v, b in zip(x, y, band, strict=True)]
     caption = (
-        f"{title}: the missing term in {words(shape.equation)} as a curve over {words(name)}, with its 95 % band. "
-        f"It takes {format_percent(min(max(shape.share, 0.0), 1.0))} of the error that is not noise. It is a picture "
-        "of what is missing, not an explanation."
+        f"{title}: the missing term in {words(shape.equation)} as a function of {words(name)}, with its 95 % band. "
+        f"It explains {format_percent(min(max(shape.share, 0.0), 1.0))} of the error beyond the noise. It describes "
+        "what is missing; it does not explain it."
     )
     drawn = (
         f'<polygon points="{_points(upper + lower[::-1])}" fill="#4477aa33"/>'

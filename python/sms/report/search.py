@@ -1,4 +1,4 @@
-"""What was tried, what could not be tried, and what the search rests on."""
+"""What was tested, what could not be tested, and what the search rests on."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _WORST_SHOWN = -0.5
 
 def candidates(diagnosis: Diagnosis) -> str:
     """Every effect tried, a table for each round of the search."""
-    title = "What was tried"
+    title = "Effects tested"
     if not diagnosis.candidates:
-        return section("candidates", title, empty("No effect was tried."))
+        return section("candidates", title, empty("No effect was tested."))
     lead = (
-        "Each round fits every testable effect alone on the identify records, on top of what was "
-        "accepted before, and asks how much of the squared error it removes on the validate "
-        "records. Below zero it makes unseen data worse."
+        "Forward selection: each round fits every identifiable effect alone to the identification records, on top "
+        "of what was selected before, and measures by how much it reduces the squared error of the validation "
+        "records. A negative reduction makes them worse."
     )
     ordered = sorted(diagnosis.candidates, key=lambda c: c.round)
     rounds = "".join(
@@ -62,8 +62,15 @@ def _round(number: int, tried: list[Candidate]) -> str:
     ]
     accepted = sum(c.accepted for c in tried)
     plural = "" if len(tried) == 1 else "s"
-    summary = f"Round {number}: {len(tried)} effect{plural} tried, {accepted} accepted"
-    headers = ("Effect", "", "Held-out gain, 95 %", "Fitted", "Chance alone", "Decision")
+    summary = f"Round {number}: {len(tried)} effect{plural} tested, {accepted} accepted"
+    headers = (
+        "Effect",
+        "",
+        "Reduction on validation records, 95 %",
+        "Fitted",
+        "p-value",
+        "Decision",
+    )
     return (
         f"<details open><summary>{summary}</summary>"
         f"{table(f'Round {number}', headers, rows, 'candidates')}</details>"
@@ -82,13 +89,13 @@ def _estimate(parameter: ParameterValue) -> str:
 
 def not_testable(diagnosis: Diagnosis) -> str:
     """The effects about which these records say nothing: neither present nor absent."""
-    title = "What these records cannot show"
+    title = "Not identifiable from these records"
     if not diagnosis.not_testable:
-        text = "Every effect of the catalogue could be tried."
+        text = "Every effect of the catalogue could be tested."
         return section(
-            "not-testable", title, empty(text if diagnosis.candidates else "Not looked at.")
+            "not-testable", title, empty(text if diagnosis.candidates else "Not examined.")
         )
-    lead = "No value is claimed for these, and none is excluded."
+    lead = "No value is claimed for these effects, and none is excluded."
     rows = [(effect_label(n.effect, n.signal), esc(n.reason)) for n in diagnosis.not_testable]
     body = table("Effects not testable", ("Effect", "Why not"), rows, "wide-last")
     return section("not-testable", title, body, lead)
@@ -109,7 +116,7 @@ def findings(diagnosis: Diagnosis) -> str:
         )
         for f in sorted(diagnosis.findings, key=lambda f: _WEIGHTS.get(f.severity, 1))
     ]
-    headers = ("Weight", "Where", "What", "What to do")
+    headers = ("Severity", "Location", "Finding", "Remedy")
     return section("data-check", title, table("Findings", headers, rows, "findings"))
 
 

@@ -28,16 +28,16 @@ MOST_RIVALS = 5
 VERDICT_WORDS: Mapping[Verdict, str] = {
     "no-evidence": "No evidence of a model error",
     "cause": "One cause found",
-    "class": "One cause found, with rival explanations",
+    "class": "One cause found, not distinguishable from others",
     "combination": "Several causes found",
     "unknown": "A model error of unknown cause",
     "data-fault": "The data cannot be used",
 }
 _NO_CARD: Mapping[Verdict, str] = {
-    "no-evidence": "Nothing is named: the simulation and these records agree within the noise.",
-    "unknown": "Nothing is named: no effect in the catalogue explains what is wrong. "
-    "What is wrong, and in which equation, stands above and below.",
-    "data-fault": "Nothing is named before the faults found by the data check are mended.",
+    "no-evidence": "No cause is named: simulation and records agree within the noise.",
+    "unknown": "No cause is named: no effect in the catalogue explains the error. "
+    "Its size is given above, the equation it arises in below.",
+    "data-fault": "No cause is named until the faults found by the data check are corrected.",
 }
 
 
@@ -68,15 +68,15 @@ def _symptoms(diagnosis: Diagnosis) -> str:
                 f'{esc(s.record)}, <span class="nowrap">{s.begin:.0f} to {s.end:.0f} s</span> '
                 f'<span class="role">{esc(share)} of it</span>'
                 if s.speaks
-                else "no more than noise",
+                else "within the noise",
                 f'<span class="nowrap">below {s.below:.0f} Hz</span>' if s.speaks else MISSING,
             )
         )
     caption = (
-        "The simulation's error on unseen records, all that is declared uncertain already fitted; when most of it, "
-        "beyond the noise, occurs, and where 80 % of its power lie"
+        "Simulation error on the validation records after fitting all declared uncertainties; when most of it "
+        "beyond the noise occurs, and the frequency below which 80 % of its power lies"
     )
-    headers = ("Signal", "Off by (RMS)", "When most", "Frequencies")
+    headers = ("Signal", "RMS error", "When largest", "Frequencies")
     return f'<div id="symptoms"><h2>What is wrong</h2>{table(caption, headers, rows, "symptoms")}</div>'
 
 
@@ -126,10 +126,10 @@ def _card(number: int, cause: Cause, diagnosis: Diagnosis) -> str:
     several = len(cause.members) > 1 or len(cause.alternatives) > 1
     identifier = cause.effect + (f" {cause.signal}" if cause.signal else "")
     rivals = max(len(cause.members) - 1, len(cause.alternatives))
-    title = esc(capital(cause.title)) + (f", or one of {rivals} rivals" if rivals > 1 else "")
+    title = esc(capital(cause.title)) + (f", or one of {rivals} alternatives" if rivals > 1 else "")
     about = (
         f'<p class="eyebrow">Cause {number} · {esc(cause.kind)} · {esc(words(cause.block))}</p>'
-        f"<h3>{title}{', or its rival' if rivals == 1 else ''}</h3>"
+        f"<h3>{title}{', or its alternative' if rivals == 1 else ''}</h3>"
         f"{_amounts(cause)}{paragraphs([cause.explanation])}"
     )
     note = f'<p class="small"><code>{esc(identifier)}</code> · {_significance(cause)}</p>'
@@ -159,13 +159,13 @@ def _against(cause: Cause, diagnosis: Diagnosis) -> str:
         if stands_alone and (c.effect, c.signal) not in named:
             out.setdefault(c.reason, []).append(effect_label(c.effect, c.signal))
     if not out:
-        text = "No other effect of the catalogue speaks from these records once chance is paid for."
+        text = "No other effect of the catalogue is significant in these records after correction for multiple testing."
         return f'<p class="small">{text}</p>'
     parts = [
         f"{', '.join(names[:MOST_RIVALS])}{_more(len(names) - MOST_RIVALS)}: {esc(reason)}"
         for reason, names in out.items()
     ]
-    return f'<p class="small"><strong>Considered and put out.</strong> {"; ".join(parts)}.</p>'
+    return f'<p class="small"><strong>Considered and rejected.</strong> {"; ".join(parts)}.</p>'
 
 
 def _more(count: int) -> str:
@@ -174,7 +174,7 @@ def _more(count: int) -> str:
 
 def _significance(cause: Cause) -> str:
     probability = esc(format_p_value(cause.p_value))
-    return f"{probability} that chance alone makes this appear, corrected for all effects tried"
+    return f"{probability} (score test, corrected for all effects tested)"
 
 
 def _amounts(cause: Cause) -> str:
@@ -201,18 +201,18 @@ def _members(cause: Cause) -> str:
     listed = {_plain(f"{r.effect} {r.signal or ''}") for r in rivals}
     listed |= {_plain(r.effect) for r in rivals}
     rest = [_plain(name) for name in cause.members if _plain(name) not in listed]
-    also = f"<p>Also in this class: {esc(', '.join(rest))}.</p>" if rest else ""
+    also = f"<p>Also in this ambiguity group: {esc(', '.join(rest))}.</p>" if rest else ""
     decide = (
-        f'<p class="decide"><strong>To tell them apart:</strong> {esc(cause.separated_by)}</p>'
+        f'<p class="decide"><strong>To distinguish them:</strong> {esc(cause.separated_by)}</p>'
         if cause.separated_by
         else ""
     )
     least = min(r.similarity for r in rivals)
-    alike = "their footprints in the data are the same"
+    alike = "their sensitivities in these records are identical"
     if not least >= 0.9995:
-        alike = f"their footprints in the data agree to {format_percent(least, 1)}"
-    caption = f"Cannot be told apart by these signals: {alike}"
-    headers = ("Explanation", "How much, if it is this one")
+        alike = f"their sensitivities in these records agree to {format_percent(least, 1)}"
+    caption = f"Ambiguity group, not distinguishable by these signals: {alike}"
+    headers = ("Explanation", "Estimate, if it is this one")
     return table(caption, headers, rows, "members") + also + decide
 
 

@@ -1,4 +1,4 @@
-"""The verdict in plain words: what an engineer would say, from the numbers of this diagnosis and nothing else."""
+"""The verdict in words: what an engineer would say, from the numbers of this diagnosis and nothing else."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def of_command(rig: Rig) -> str:
         return "Closed loop, its controller not simulated: the valve's command is taken from the records."
     law = {"pid": "PID", "state_feedback": "state feedback"}[control.law]
     held = (
-        "; the recorded command is held against what it makes of the recorded extension"
+        "; the recorded command is compared with what it computes from the recorded extension"
         if any(without_leg(s) == "valve_command" for s in rig.signals)
         else ""
     )
     whose = "the controller of each leg" if rig.kind == "platform" else "its controller"
     return (
-        f"Closed loop, {whose} ({law}) simulated: it makes the valve's command from the recorded set-point and "
+        f"Closed loop, {whose} ({law}) simulated: it computes the valve's command from the recorded set-point and "
         f"the simulated extension{held}."
     )
 
@@ -64,25 +64,25 @@ def explained(cause: Cause) -> str:
     for rival in cause.alternatives:
         sizes = ", ".join(_amount(p, p.old_value != 0.0) for p in rival.parameters)
         rivals.append(f"{rival.title} ({sizes})")
-    return f"one of {'; '.join(rivals)} - which one, these signals cannot tell"
+    return f"one of {'; '.join(rivals)} (these signals cannot distinguish between them)"
 
 
 def sentence(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder | None) -> str:
     if verdict == "no-evidence":
         return (
-            "No evidence that the simulation is wrong: within its declared uncertainties the model explains "
-            "these records down to what does not repeat from stroke to stroke."
+            "No evidence of a model error: within the declared uncertainties the model explains these records down to "
+            "what does not repeat from stroke to stroke."
         )
     if verdict == "unknown":
         where = f" ({arranged(remainder)})" if remainder is not None else ""
         return (
-            "The simulation is wrong, and no effect of the catalogue explains how: the error is systematic"
+            "The simulation is wrong, and no effect of the catalogue explains the error, which is systematic"
             f"{where}."
         )
     if len(causes) == 1:
-        return f"The simulation misses {explained(causes[0])}."
+        return f"Model error found: {explained(causes[0])}."
     return (
-        "The simulation misses "
+        "Model errors found: "
         + "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1))
         + "."
     )
@@ -92,7 +92,7 @@ def data_fault(faults: Sequence[Finding]) -> str:
     first = faults[0]
     where = f"{first.file}" + (f", line {first.line}" if first.line else "")
     return (
-        f"The data cannot be trusted, so nothing is concluded from it. {where}, {first.signal}: "
+        f"The data are not usable, so nothing is concluded from them. {where}, {first.signal}: "
         f"{first.message}; {first.remedy}."
     )
 
@@ -137,7 +137,7 @@ def conclusion(
             f"{g.record}: {g.baseline_rms:.2f} to {g.extended_rms:.2f} {g.unit}" for g in gain
         )
         out.append(
-            f"On the records it was not fitted to, the extended model's error falls ({worth})."
+            f"On the validation records the RMS error of the extended model falls ({worth})."
         )
         out.append(chosen_again(causes, "strokes"))
     out.append(_of_remainder(remainder))
@@ -154,26 +154,25 @@ def conclusion(
 
 
 INSENSITIVE = (
-    "the records kept aside do not feel it; it is judged by the fitted ones, each part of them predicted with the size "
-    "that the rest asks for"
+    "the validation records are insensitive to it; "
+    "it was judged by cross-validation within the identification records"
 )
 
 
 def judged_by_cross_validation(cause: Cause) -> str:
-    """What to say of a cause that the records kept aside cannot judge."""
-    return f"{capital(cause.title)}: {INSENSITIVE}; a record that feels it would be a better judge."
+    """What to say of a cause that the validation records cannot judge."""
+    return f"{capital(cause.title)}: {INSENSITIVE}; a validation record that is sensitive to it would settle it."
 
 
 def chosen_again(causes: Sequence[Cause], unit: str) -> str:
-    """How often the same is chosen when what was judged by is drawn anew, `unit` by unit."""
+    """How often the same is selected in bootstrap resamples of what was judged by, `unit` by unit."""
     if len(causes) == 1:
-        what = "this cause" if len(causes[0].members) == 1 else "one of this class"
+        what = "Selected" if len(causes[0].members) == 1 else "One of this ambiguity group selected"
         listed = f"{what} in {format_percent(causes[0].support)}"
     else:
-        listed = ", ".join(f"({i}) in {format_percent(c.support)}" for i, c in enumerate(causes, 1))
-    return (
-        f"With the {unit} drawn anew, again and again, the choice falls on {listed} of the cases."
-    )
+        each = ", ".join(f"({i}) in {format_percent(c.support)}" for i, c in enumerate(causes, 1))
+        listed = f"Selected {each}"
+    return f"{listed} of bootstrap resamples of the {unit}."
 
 
 def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
@@ -196,7 +195,7 @@ def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
         values = [p.value for r, p in found if r.differs == differs]
         if all(abs(v - own.value) <= spread for v in values):
             text += (
-                f" With another {differs} it is the same within that scatter: it belongs to the rig, not to the "
+                f" With another {differs} it agrees within that scatter: it belongs to the rig, not to the "
                 f"{differs}."
             )
         else:
@@ -207,16 +206,18 @@ def _across_rigs(cause: Cause, related: Sequence[Related]) -> str:
 
 
 def _of_remainder(remainder: Remainder) -> str:
-    text = f"What is left on unseen records is {remainder.rms:.2f} {remainder.unit} rms"
+    text = f"The residual on the validation records is {remainder.rms:.2f} {remainder.unit} RMS"
     if arranged(remainder):
-        text += f"; part of it is systematic, so there is more to be found: {arranged(remainder)}"
+        text += (
+            f"; part of it is systematic, so the model is still incomplete: {arranged(remainder)}"
+        )
         if (ripple := remainder.ripple) is not None:
             text += (
                 f". Along the stroke it has a period of {format_quantity(ripple.period, 'm')}, amplitude "
                 f"{ripple.amplitude:.2f} {remainder.unit}: look for a screw, thread or gear of that pitch"
             )
     else:
-        text += ", and it does not repeat from stroke to stroke: a better model would not take it"
+        text += ", and it does not repeat from stroke to stroke: no better model would reduce it"
     return text + "."
 
 
@@ -227,7 +228,7 @@ def next_experiment(
     for cause in causes:
         if cause.alternatives:
             apart = tuple(dict.fromkeys([cause.effect, *(a.effect for a in cause.alternatives)]))
-            return NextExperiment("Tell the explanations apart", cause.separated_by, apart)
+            return NextExperiment("Distinguish between the explanations", cause.separated_by, apart)
     if verdict == "unknown":
         return NextExperiment(
             "Slow strokes over the whole travel, both ways, at two pressures and two speeds",

@@ -29,24 +29,24 @@ def sentence(verdict: Verdict, causes: Sequence[Cause], hidden: Hidden) -> str:
     """What a person reads first."""
     if verdict == "no-evidence":
         return (
-            "No evidence that the simulation is wrong: what it leaves is within what the declared uncertainties make "
+            "No evidence of a model error: what the simulation leaves is within what the declared uncertainties make "
             "tolerable."
         )
     if verdict == "unknown":
         return (
-            "The simulation is wrong, and no effect of the catalogue explains how. "
-            f"The error comes from {block_in_words(hidden.equation)}; {shape_in_words(hidden)}."
+            "The simulation is wrong, and no effect of the catalogue explains the error. "
+            f"It arises in {block_in_words(hidden.equation)}; {shape_in_words(hidden)}."
         )
     if len(causes) == 1:
-        return f"The simulation misses {explained(causes[0])}."
+        return f"Model error found: {explained(causes[0])}."
     listed = "; and ".join(f"({i}) {explained(c)}" for i, c in enumerate(causes, 1))
-    return f"The simulation misses {listed}."
+    return f"Model errors found: {listed}."
 
 
 def sentence_of_inconsistency(found: Inconsistency) -> str:
     return (
-        "The records contradict each other: each is explained by itself, but no single model is right for all. "
-        f"The nearest explanation, {found.effect.title}, would need another size in each."
+        "The records are inconsistent: each can be explained by itself, but no single model explains all of them. "
+        f"The best candidate ({found.effect.title}) would need a different value in each."
     )
 
 
@@ -60,7 +60,7 @@ def words_of_inconsistency(found: Inconsistency, rig: str) -> Finding:
         rig,
         None,
         found.effect.signal if found.effect.of_sensor else None,
-        f"the records contradict each other: with {found.effect.title}, {name} would be {each}",
+        f"the records are inconsistent: for '{found.effect.title}', {name} is estimated as {each}",
         "find out what was changed between the runs and state it as their conditions, or leave out the one at odds",
     )
 
@@ -87,18 +87,18 @@ def block_in_words(equation: str) -> str:
     if equation == "force":
         return "the balance of forces on the piston"
     if equation == "command":
-        return "the controller, whose command is another than it should be"
+        return "the controller, whose command differs from the recorded one"
     if equation.startswith("flow"):
-        return f"the {equation.replace('flow', 'air flow')} (valve, tubes, leaks and heat look alike there)"
+        return f"the {equation.replace('flow', 'air flow')} (valve, tubes, leaks and heat transfer act alike there)"
     return f"the {equation.replace('_', ' ')}"
 
 
 def shape_in_words(hidden: Hidden) -> str:
-    """Along which signal the missing term is best drawn."""
+    """As a function of which signal the missing term explains most."""
     shape = hidden.shape
     signal = spaced(shape.signal.split(" [")[0])
     return (
-        f"as a curve over {signal} it takes {format_percent(min(shape.share, 1.0))} of what is not noise "
+        f"as a function of {signal} it explains {format_percent(min(shape.share, 1.0))} of the error beyond the noise "
         f"({shape.equation.replace('_', ' ')})"
     )
 
@@ -110,28 +110,27 @@ def nearest_in_words(
     after: LackOfFit,
     table: Mapping[str, Parameter],
 ) -> str:
-    """What comes closest to an unknown, and why it is not the answer."""
+    """The best candidate for an unknown, and why it was rejected."""
     if law is None:
         takes = 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)
         return (
-            f"Nearest comes {nearest.title}, which takes {format_percent(takes)} of the error that is not noise: "
-            "not enough to be its cause."
+            f"Best candidate, rejected: {nearest.title}, which explains {format_percent(takes)} of the error beyond "
+            "the noise: not enough to be its cause."
         )
     name = law.effect.parameters[0]
     if isinstance(law, Hysteresis):
         alone, beside = format_aligned([law.alone, law.beside[0]], table[name].unit, name)
         return (
-            f"Nearest comes {law.effect.title}, but its size would be {alone} alone and {beside} beside a play of "
-            f"{format_quantity(law.play[0], 'V')} between command and spool: what the valve does depends on the way "
-            "that the command came."
+            f"Best candidate, rejected: {law.effect.title}. Its estimate is {alone} alone and {beside} together with a "
+            f"play of {format_quantity(law.play[0], 'V')} between command and spool: the valve has hysteresis."
         )
     signal, unit = (
         law.signal.removesuffix("]").split(" [") if "[" in law.signal else (law.signal, "1")
     )
     low, high = format_aligned([law.low[0], law.high[0]], table[name].unit, name)
     return (
-        f"Nearest comes {law.effect.title}, but its size would be {low} where {spaced(signal)} is below "
-        f"{format_quantity(law.cut, unit)} and {high} above: it follows another law."
+        f"Best candidate, rejected: {law.effect.title}. Its estimate is {low} where {spaced(signal)} is below "
+        f"{format_quantity(law.cut, unit)} and {high} above: the parameter is not constant."
     )
 
 
@@ -146,18 +145,20 @@ def conclusion(
     after: LackOfFit,
     nearest: str = "",
 ) -> tuple[str, ...]:
-    """What an engineer would conclude, a sentence each; `nearest` is what comes closest to an unknown."""
+    """What an engineer would conclude, a sentence each; `nearest` is the best candidate for an unknown."""
     out = []
     if verdict in ("cause", "class", "combination"):
         out += [judged_by_cross_validation(c) for c in causes if c.crosswise]
         out += [] if all(c.crosswise for c in causes) else [_worth(gain)]
         shares = format_percent(max(0.0, 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)))
-        out.append(f"Of the error that is not noise, {shares} is explained.")
+        out.append(f"The extended model explains {shares} of the error beyond the noise.")
         out.append(chosen_again(causes, "windows"))
     elif verdict == "unknown":
         others = sorted(hidden.shares.items(), key=lambda item: -item[1][0])[:3]
         listed = ", ".join(f"{name.replace('_', ' ')} {format_percent(s[0])}" for name, s in others)
-        out.append(f"What a hidden term in each equation would take alone: {listed}.")
+        out.append(
+            f"Share of the error beyond the noise that an unknown input in one equation explains alone: {listed}."
+        )
         out += [nearest] if nearest else []
     if verdict != "no-evidence" and fed is not None:
         out.append(two_ways(hidden, fed))
@@ -165,8 +166,8 @@ def conclusion(
         inside = block_of(causes[0].block)
         if not any(word in hidden.equation for word in inside):
             out.append(
-                f"{capital(causes[0].title)} acts elsewhere than where a hidden term takes most "
-                f"({hidden.equation.replace('_', ' ')}): look at both."
+                f"{capital(causes[0].title)}: acts in another equation than the unknown input that explains most "
+                f"({hidden.equation.replace('_', ' ')}); examine both."
             )
     return tuple(out)
 
@@ -192,21 +193,21 @@ def two_ways(hidden: Hidden, fed: FedEquations) -> str:
     """What the equations say when each is fed with measured signals, and whether the hidden inputs say the same."""
     if not fed.beyond_noise:
         return (
-            "Fed with measured signals, no equation shows more by itself than noise and what two honest descriptions "
-            "of one machine differ by; only the simulation, which adds errors up, does."
+            "Fed with measured signals, no single equation has an error beyond noise and the tolerance between "
+            "equivalent models; only the simulation, which accumulates errors, has."
         )
     most = next(e for e in fed.equations if e.equation == fed.equation)
     size, noise = format_aligned([most.rms, most.noise], most.unit)
     found = (
-        f"Fed with measured signals, each equation by itself, {spaced(most.equation)} is off by {size} with a noise of "
-        f"{noise} and has {format_percent(most.share[0])} of what is not noise"
+        f"Fed with measured signals, each equation by itself, {spaced(most.equation)} has an error of {size} at a "
+        f"noise of {noise}, {format_percent(most.share[0])} of all error beyond the noise"
     )
     if hidden.equation == "command":
-        return f"{found}. The controller, to which hidden inputs in the simulation point, is none of these equations."
+        return f"{found}. The controller, to which unknown inputs in the simulation point, is none of these equations."
     if agree(hidden, fed):
         same = hidden.equation == fed.equation
         where = "there too" if same else f"to {spaced(hidden.equation)}, which is as likely here"
-        return f"{found}; hidden inputs in the simulation point {where}: the two ways agree."
+        return f"{found}; unknown inputs in the simulation point {where}: the two methods agree."
     readings = [e for e in (fed.equation, hidden.equation) if e.startswith("reading of ")]
     suspect = (
         f"that of {spaced(readings[0].removeprefix('reading of '))} first"
@@ -214,8 +215,8 @@ def two_ways(hidden: Hidden, fed: FedEquations) -> str:
         else "or a delay between two of them"
     )
     return (
-        f"{found}; hidden inputs in the simulation point to {spaced(hidden.equation)}. The two ways point to different "
-        f"equations: then a reading is suspect, {suspect}."
+        f"{found}; unknown inputs in the simulation point to {spaced(hidden.equation)}. The two methods point to "
+        f"different equations: a sensor reading is suspect, {suspect}."
     )
 
 
@@ -240,4 +241,4 @@ def _worth(gain: Sequence[Gain]) -> str:
         worst = max((g for g in gain if g.signal == signal), key=lambda g: g.baseline_rms)
         old, new = format_aligned([worst.baseline_rms, worst.extended_rms], worst.unit)
         parts.append(f"{spaced(signal)} {old} to {new}")
-    return f"On records the fit has not seen, the error within a window falls: {', '.join(parts)}."
+    return f"On the validation records the RMS error within a window falls: {', '.join(parts)}."

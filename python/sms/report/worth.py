@@ -1,4 +1,4 @@
-"""What the extension is worth on unseen records, what is left, and what to measure next."""
+"""Improvement on the validation records, the residual, and the next experiment."""
 
 from __future__ import annotations
 
@@ -21,14 +21,18 @@ _LEGEND = (
     (
         "baseline",
         "Baseline",
-        "the simulation after every parameter was fitted within its declared uncertainty",
+        "the simulation with every parameter fitted within its declared uncertainty",
     ),
     ("extended", "Extended", "the same with the causes named here"),
-    ("floor", "Noise floor", "what does not repeat from stroke to stroke: no model can explain it"),
+    (
+        "floor",
+        "Noise floor",
+        "what does not repeat from stroke to stroke, which no model can explain",
+    ),
 )
 
 
-_FLOOR_OF_A_SIMULATION = "what changes from one moment to the next: no model can explain it"
+_FLOOR_OF_A_SIMULATION = "what changes from sample to sample, which no model can explain"
 TESTED = ' <span class="role">test: took no part in any choice</span>'
 
 
@@ -57,9 +61,9 @@ def legend(diagnosis: Diagnosis) -> str:
 
 def gain(diagnosis: Diagnosis) -> str:
     """Error before and after on each validate record, as bars with interval, and what it means in use."""
-    title = "What it is worth" if diagnosis.causes else "How far off the simulation is"
+    title = "Improvement" if diagnosis.causes else "Simulation error"
     if not diagnosis.gain:
-        return section("worth", title, empty("No record was judged, so no gain is claimed."))
+        return section("worth", title, empty("No record was judged, so no improvement is claimed."))
     extended = "Extended" if diagnosis.causes else ""
     first = _worst_of_each(diagnosis.gain)
     body = gain_table(first, extended)
@@ -95,7 +99,7 @@ def _in_use(quantities: Sequence[InUse]) -> str:
                 esc(format_percent(change, signed=True)),
             )
         )
-    caption = "In use: what either model predicts in a position loop of 10 V/m"
+    caption = "In closed loop: what either model predicts under a position controller of 10 V/m"
     return table(caption, ("Quantity", "Predicted", "Change"), rows, "in-use")
 
 
@@ -153,7 +157,7 @@ def _gain_rows(g: Gain, scale: Scale, extended: str) -> str:
 
 def remainder(diagnosis: Diagnosis) -> str:
     """What is still unexplained: its size, whether it repeats, and where it lies."""
-    title, left = "What is left", diagnosis.remainder
+    title, left = "Residual", diagnosis.remainder
     floors = " and ".join(
         f"{text} from {words(name)} to {words(name)}"
         for name, text in zip(
@@ -164,12 +168,12 @@ def remainder(diagnosis: Diagnosis) -> str:
     )
     noise = f"<p>The measurement itself scatters by {esc(floors)} (RMS).</p>" if floors else ""
     if not isinstance(left, Remainder):
-        return section("left", title, empty("The remainder was not examined.") + noise)
+        return section("left", title, empty("The residual was not examined.") + noise)
     sentence = (
-        f"{format_quantity(left.rms, left.unit)} RMS is unexplained on the validate records: "
+        f"{format_quantity(left.rms, left.unit)} RMS is unexplained on the validation records: "
         f"{format_percent(left.share_of_excess)} of the baseline's reproducible squared error. "
-        f"Of what is left, {format_percent(left.repeats)} repeats from stroke to stroke, "
-        "which is what a better model could still take."
+        f"Of the residual, {format_percent(left.repeats)} repeats from stroke to stroke, "
+        "which a better model could still explain."
     )
     shares = _shares(left, "extended" if diagnosis.causes else "baseline")
     return section("left", title, f"<p>{esc(sentence)}</p>{noise}{shares}")
@@ -204,17 +208,17 @@ def _unit(diagnosis: Diagnosis) -> str:
 
 def next_experiment(diagnosis: Diagnosis) -> str:
     """The measurement that would teach most, or what to do with the answer as it is."""
-    title, plan = "What to do next", diagnosis.next_experiment
+    title, plan = "Next experiment", diagnosis.next_experiment
     if plan is None:
         text = _without_measuring(diagnosis)
         return section("next", title, f'<div class="card plan"><p>{esc(text)}</p></div>')
     parts = [_identifier_label(identifier) for identifier in plan.separates]
-    separates = f"<p>It would separate: {', '.join(parts)}.</p>" if parts else ""
+    separates = f"<p>It would distinguish: {', '.join(parts)}.</p>" if parts else ""
     carry = ""
     if diagnosis.verdict == "unknown" and diagnosis.hidden is not None and not diagnosis.empirical:
         carry = (
-            f"<p>Until it is found, <code>sms diagnose {esc(diagnosis.rig)} --empirical</code> carries the curve of "
-            "what is missing as a term, and measures what that is worth.</p>"
+            f"<p>Until it is found, <code>sms diagnose {esc(diagnosis.rig)} --empirical</code> includes the curve of "
+            "the missing term in the simulation and measures the improvement.</p>"
         )
     body = (
         f"<h3>{esc(capital(plan.title))}</h3><p>{esc(capital(plan.purpose))}</p>{separates}{carry}"
@@ -225,14 +229,15 @@ def next_experiment(diagnosis: Diagnosis) -> str:
 def _without_measuring(diagnosis: Diagnosis) -> str:
     if diagnosis.causes:
         return (
-            "No measurement is proposed: these records tell the explanation from all others that were tried. Look for "
-            "it on the machine and mend it; or keep it and simulate with extended.toml, written beside this page."
+            "No measurement is proposed: these records distinguish the explanation from all others that were "
+            "tested. Find it on the machine and repair it, or keep it and simulate with extended.toml, written beside "
+            "this page."
         )
     if diagnosis.verdict == "data-fault":
-        return "Mend what the data check found, then diagnose again."
+        return "Correct what the data check found, then diagnose again."
     return (
-        "Nothing is proposed. An effect too small for these records may still be there: "
-        f"sms limits {diagnosis.rig} says how small, and which experiment would show it."
+        "No measurement is proposed. An effect too small for these records may still be present: "
+        f"sms limits {diagnosis.rig} gives the detection limits, and the experiment that lowers each."
     )
 
 

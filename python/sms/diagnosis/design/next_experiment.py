@@ -30,11 +30,11 @@ def next_experiment(
     final: Fitted,
     data: Data,
     hidden: Hidden,
-    unfelt: Sequence[Effect] = (),
+    unseen: Sequence[Effect] = (),
 ) -> NextExperiment | None:
     """The measurement that would tell most; None when there is nothing to tell apart.
 
-    unfelt: causes that the records kept aside do not feel.
+    unseen: causes to which the validation records are insensitive.
     """
     rivals = next((list(c) for c in classes if len(c) > 1), [])
     if rivals:
@@ -43,24 +43,27 @@ def next_experiment(
             experiment, separation = found
             apart = tuple(e.id if e.signal is None else f"{e.id} {e.signal}" for e in rivals)
             power = (
-                f"expected to tell them apart by {separation:.1f} standard errors"
+                f"expected to distinguish them by {separation:.1f} standard errors"
                 if separation >= 3.0
-                else f"the best of the menu, though by {separation:.1f} standard errors only: better "
+                else f"the best of the menu, though with {separation:.1f} standard errors only; better: "
                 + rivals[0].separated_by[:1].lower()
                 + rivals[0].separated_by[1:].rstrip(".")
             )
             return NextExperiment(experiment.title, f"{experiment.how}; {power}.", apart)
     if rivals:
         return NextExperiment(
-            "Tell the explanations apart", rivals[0].separated_by, tuple(e.id for e in rivals)
+            "Distinguish between the explanations",
+            rivals[0].separated_by,
+            tuple(e.id for e in rivals),
         )
     if verdict == "unknown":
         return _for_unknown(hidden)
-    if unfelt:
-        effect = unfelt[0]
+    if unseen:
+        effect = unseen[0]
         return NextExperiment(
-            'A record that feels it, kept aside with role = "validate"',
-            f"those of today do not feel {effect.title}, so that the fitted ones alone speak for it. What shows it: "
+            'A record that is sensitive to it, with role = "validate"',
+            f"the present validation records are insensitive to it ({effect.title}), so that only the identification "
+            "records support it. What shows it: "
             + effect.separated_by[:1].lower()
             + effect.separated_by[1:],
             (),
@@ -73,12 +76,12 @@ def _for_unknown(hidden: Hidden) -> NextExperiment:
     signal, equation = (
         s.split(" [")[0].replace("_", " ") for s in (hidden.shape.signal, hidden.equation)
     )
-    again = "repeat it once, so that chance can be told from a cause"
+    again = "repeat it once, so that chance can be excluded"
     if signal == "time":
         return NextExperiment(
             "The machine at rest, for as long as a run",
-            f"no signal of these records brings the missing term in {equation}: at rest it shows whether it comes with "
-            f"time, from outside, or with the motion; {again}.",
+            f"no signal of these records explains the missing term in {equation}: at rest it shows whether it comes "
+            f"with time, from outside, or with the motion; {again}.",
             (),
         )
     return NextExperiment(

@@ -1,4 +1,4 @@
-"""Judgement of an effect that the records kept aside do not feel: friction at high speed, and they are slow.
+"""Cross-validation of an effect to which the validation records are insensitive: fast friction, slow records.
 
 Such records can speak neither for it nor against it. What is left is to hold the fitted records against each other: the
 effect's size comes from a part of them, and has to predict the rest. A part is a record, where more than one feels the
@@ -17,7 +17,7 @@ from sms.estimation.windows import Runs
 
 
 def change_on_validation(trial: Fitted, current: Fitted, data: Data) -> float:
-    """By how much the records kept aside change with an effect: mean square, in units of the declared noise."""
+    """By how much the validation records change with an effect: mean square, in units of the declared noise."""
     return float(np.mean((unseen(trial, data) - unseen(current, data)) ** 2))
 
 
@@ -37,14 +37,14 @@ def objection(
     gain = weighted_ms(before, runs.block, counts) - weighted_ms(after, runs.block, counts)
     worth = before - after
     if interval(gain)[0] <= 0.0:
-        return "the records it has not seen do not feel it, and those that do disagree on its size"
+        return "the validation records are insensitive to it, and the identification records disagree on its value"
     if float(np.mean(worth)) < least:
-        return "the records it has not seen do not feel it, and to those that do it is worth little"
+        return "the validation records are insensitive to it, and it improves the identification records little"
     for number, run in enumerate(runs.motions):
         if float(np.mean(worth[runs.record == number])) < -least:
             return (
-                "the records it has not seen do not feel it, and with the size that the others ask "
-                f"for it makes '{run.name}' worse"
+                "the validation records are insensitive to it, and the value estimated from the other records "
+                f"makes '{run.name}' worse"
             )
     return ""
 

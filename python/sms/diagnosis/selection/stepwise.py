@@ -172,7 +172,9 @@ def _best_step(effect: Effect, current: Fitted, data: Data, here: float) -> tupl
                 continue
             gain = here - float(np.sum(np.log1p(energies(data.identify, residual))))
             best = max(best, (gain, value))
-            if gain < -len(data.identify.problem.windows):  # worse by far: larger ones are no better
+            if gain < -len(
+                data.identify.problem.windows
+            ):  # worse by far: larger ones are no better
                 break
     return best
 

@@ -25,8 +25,8 @@ from sms.estimation.block_statistics import interval, resampled, sum_by, weighte
 from sms.parameters import common_parameter
 from sms.units_display import format_quantity
 
-NO_HELP = "does not help on the records it has not seen"
-WORTH_NOTHING = "real, but worth next to nothing on the records it has not seen"
+NO_HELP = "does not reduce the error on the validation records"
+WORTH_NOTHING = "significant, but reduces the error on the validation records hardly at all"
 
 
 @dataclass(frozen=True)
@@ -79,9 +79,9 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
     value = trial.fitted.params[name]
     low, high = trial.effect.plausible_range(data.rig.declared(common_parameter(name)).value)
     if trial.p_value > SIGNIFICANT:
-        return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
+        return f"not significant (p = {trial.p_value:.2g}, corrected for all effects tested)"
     if not low <= value <= high:
-        return f"fits only with {format_quantity(value, data.rig.table[name].unit, name)}, which is not plausible"
+        return f"fits only with {format_quantity(value, data.rig.table[name].unit, name)}, which is implausible"
     if trial.gain_interval[0] <= 0.0:
         return NO_HELP
     worth = float(np.mean(before) - np.mean(trial.squared))
@@ -93,7 +93,7 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
     for number, name_ in enumerate(m.name for m in data.validate.motions):
         rows = data.validate.record == number
         if float(np.mean(trial.squared[rows]) - np.mean(before[rows])) > worth:
-            return f"makes '{name_}' worse by more than it gains elsewhere"
+            return f"makes '{name_}' worse by more than it improves the others"
     return ""
 
 
@@ -173,7 +173,7 @@ def _best_of_runs(
 
 
 def _takes_less(trial: Trial, best: Trial, before: Array, left: Mapping[str, Array]) -> bool:
-    """Whether a rival takes less than nine tenths, of all records where the unseen ones do not feel it."""
+    """Whether a rival takes less than nine tenths, of all records where those for validation are insensitive."""
     if not (trial.cross_validated or best.cross_validated):
         return trial.gain < 0.9 * best.gain
     takes, most = (float((before - left[t.effect.key]).sum()) for t in (trial, best))
