@@ -8,6 +8,8 @@
 // Index space: the parameters of all legs first, in the order of params.def, then those of leg 1, 2 and 3.
 #pragma once
 
+#include <algorithm>
+
 #include "sms/params.hpp"
 #include "sms/scalar.hpp"
 
@@ -20,8 +22,7 @@ struct LegParams : Params<S> {
 
   explicit LegParams(const Params<S>& common = Params<S>()) : Params<S>(common) {
     for (Params<S>& leg : shift) {
-#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) leg.name = S(0);
-#include "sms/params.def"
+      std::fill_n(values_of(leg), int(param_count), S(0));
     }
   }
 };
@@ -50,8 +51,9 @@ LegParams<T> cast(const LegParams<S>& from) {
 template <typename S>
 Params<S> params_of_leg(const LegParams<S>& params, int i) {
   Params<S> leg = params;
-#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) leg.name += params.shift[i].name;
-#include "sms/params.def"
+  for (int k = 0; k < param_count; ++k) {
+    values_of(leg)[k] += values_of(params.shift[i])[k];
+  }
   return leg;
 }
 
