@@ -99,9 +99,8 @@ Eigen::VectorXd integral_along(const ControlRecord& record, const ControlLaw& la
 // period of the controller that does not fit the record's step. name: of the record, in messages.
 void check_loop(const std::string& name, const ControlRecord& record, double period);
 
-// Drives the valve of a window; RecordedCommand has the same members.
 template <typename S>
-class SimulatedController {
+class SimulatedController final : public ValveDrive<S> {
  public:
   // integral: of the controller where it begins to be fed with the record, V. hidden: a voltage at the controller's
   // output, if any. noise: of the recorded command, V.
@@ -130,7 +129,7 @@ class SimulatedController {
   }
 
   // Spool and drive where the window begins: they follow the command alone, and are run up over the 50 ms before.
-  void begin(ActuatorState<S>& a) {
+  void begin(ActuatorState<S>& a) override {
     const int first = window_.first * grid_.steps;
     const int run_up = std::min(first, static_cast<int>(0.05 / value_of(h_)) + 1);
     ActuatorState<S> k1{}, k2{}, moved{};
@@ -148,10 +147,11 @@ class SimulatedController {
   }
 
   // V at the valve in the present step.
-  const S& at(double) const { return mean_; }
+  S at(double) const override { return mean_; }
 
   // Step i after sample k of the window begins at state y: the controller takes its sample if it is time.
-  void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>& sensors, BenchState<S>& rate) {
+  void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>& sensors,
+                   BenchState<S>& rate) override {
     const int q = (window_.first + k) * grid_.steps + i;
     if (hidden_) {
       pushed_ = hidden_.at(0, k + double(i) / grid_.steps);
@@ -166,7 +166,7 @@ class SimulatedController {
   }
 
   // What the controller makes of the recorded readings against the recorded command, over its noise.
-  S* readings(int sample, S* out) const {
+  S* readings(int sample, S* out) const override {
     if (record_.command.size() > 0) {
       *out++ = detail::reading_error<S>(by_record_ + pushed_, record_.command, sample, noise_);
     }

@@ -1,5 +1,7 @@
 #include "estimation/bench_loop.hpp"
 
+#include "estimation/shooting_search.hpp"
+
 namespace sms {
 namespace estimation {
 
@@ -23,6 +25,10 @@ Eigen::VectorXd BenchLoopPlant::guess(int record, int first) const {
   start << BenchPlant::guess(record, first), integral[std::min<Eigen::Index>(begins, integral.size() - 1)];
   return start;
 }
+
+SMS_PLANT_SIMULATES(BenchLoopPlant, double);
+SMS_PLANT_SIMULATES(BenchLoopPlant, ParameterJet);
+template class ShootingProblem<BenchLoopPlant>;
 
 }  // namespace estimation
 }  // namespace sms

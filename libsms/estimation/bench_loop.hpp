@@ -27,15 +27,7 @@ class BenchLoopPlant : public BenchPlant {
 
   template <typename S>
   void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
-                int knots = 0) const {
-    const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
-    const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(BenchPlant::kHidden);
-    const auto controlled = [&](const Bench<S>& bench, const S& h) {
-      return SimulatedController<S>(bench.params, laws(), control_record(window.record), window, law_, grid, h,
-                                    start[BenchPlant::kStart], at_output, command_noise_);
-    };
-    simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
-  }
+                int knots = 0) const;
 
  private:
   ControlRecord control_record(int record) const {
@@ -48,6 +40,23 @@ class BenchLoopPlant : public BenchPlant {
   std::vector<Eigen::VectorXd> integral_;  // of each record: before each sample of the controller as declared, V
   double said_period_;
 };
+
+template <typename S>
+void BenchLoopPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
+                              const S* hidden, int knots) const {
+  const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
+  const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(BenchPlant::kHidden);
+  const DriveOf<S> controlled = [&](const Bench<S>& bench, const S& h) {
+    return std::make_unique<SimulatedController<S>>(bench.params, laws(), control_record(window.record), window, law_,
+                                                    grid, h, start[BenchPlant::kStart], at_output, command_noise_);
+  };
+  simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
+}
+
+// Compiled in bench_loop.cpp.
+extern SMS_PLANT_SIMULATES(BenchLoopPlant, double);
+extern SMS_PLANT_SIMULATES(BenchLoopPlant, ParameterJet);
+extern template class ShootingProblem<BenchLoopPlant>;
 
 }  // namespace estimation
 }  // namespace sms

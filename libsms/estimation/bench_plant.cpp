@@ -1,5 +1,7 @@
 #include "estimation/bench_plant.hpp"
 
+#include "estimation/shooting_search.hpp"
+
 namespace sms {
 namespace estimation {
 namespace {
@@ -61,6 +63,12 @@ bool BenchPlant::feels_all(const Params<double>& params, const Window& window) c
   const Params<double> p = in_run(params, of(window.record));
   return p.supply_line_resistance > 0.0 || seals_deform(p, laws_.friction) || temperature_is_state(p, laws_.chamber);
 }
+
+SMS_BENCH_IS_DRIVEN(double);
+SMS_BENCH_IS_DRIVEN(ParameterJet);
+SMS_PLANT_SIMULATES(BenchPlant, double);
+SMS_PLANT_SIMULATES(BenchPlant, ParameterJet);
+template class ShootingProblem<BenchPlant>;
 
 }  // namespace estimation
 }  // namespace sms

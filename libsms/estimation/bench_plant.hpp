@@ -8,6 +8,9 @@
 // (bench_loop.hpp).
 #pragma once
 
+#include <functional>
+#include <memory>
+
 #include "estimation/hidden_inputs.hpp"
 #include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
@@ -79,14 +82,18 @@ class BenchPlant {
     return detail::moved_last(extension, sample, 6.0 * noise_.extension);
   }
 
-  // As simulate(), in `steps` steps a sample; drive_of(Bench, h) makes what drives the valve.
-  template <typename S, typename DriveOf>
-  void simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
+  // Makes what drives the valve in a simulation by steps of h.
+  template <typename S>
+  using DriveOf = std::function<std::unique_ptr<ValveDrive<S>>(const Bench<S>& bench, const S& h)>;
+
+  // As simulate(), in `steps` steps a sample.
+  template <typename S>
+  void simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf<S>& drive_of,
                        const S* start, S* residual, const S* hidden, int knots) const;
 
   // The state in which a window begins.
-  template <typename S, typename Drive>
-  BenchState<S> begin(const Bench<S>& bench, const S* start, Drive& drive) const;
+  template <typename S>
+  BenchState<S> begin(const Bench<S>& bench, const S* start, ValveDrive<S>& drive) const;
 
   // Writes the whitened errors of one sample and returns where the next begin.
   template <typename S>
@@ -132,15 +139,15 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
                           int knots) const {
   const BenchRecord& record = of(window.record);
   const int steps = detail::steps_over(record.step, longest_step_);
-  const auto recorded = [&](const Bench<S>& bench, const S& h) {
-    return RecordedCommand<S>(bench.params, bench.laws, record.command, record.hold, record.step, window.first, steps,
-                              h);
+  const DriveOf<S> recorded = [&](const Bench<S>& bench, const S& h) {
+    return std::make_unique<RecordedCommand<S>>(bench.params, bench.laws, record.command, record.hold, record.step,
+                                                window.first, steps, h);
   };
   simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
 }
 
-template <typename S, typename Drive>
-BenchState<S> BenchPlant::begin(const Bench<S>& bench, const S* start, Drive& drive) const {
+template <typename S>
+BenchState<S> BenchPlant::begin(const Bench<S>& bench, const S* start, ValveDrive<S>& drive) const {
   const Params<S>& p = bench.params;
   const bool warm = temperature_is_state(p, laws_.chamber);
   BenchState<S> state = bench_at_rest(bench, start[0], S(0), S(2e5));
@@ -154,15 +161,16 @@ BenchState<S> BenchPlant::begin(const Bench<S>& bench, const S* start, Drive& dr
   return state;
 }
 
-template <typename S, typename DriveOf>
-void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf& drive_of,
+template <typename S>
+void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf<S>& drive_of,
                                  const S* start, S* residual, const S* hidden, int knots) const {
   const BenchRecord& record = of(window.record);
   const Bench<S> bench = make_bench(in_run(params, record), laws_);
   const Params<S>& p = bench.params;
   const HiddenInputs<S> pushes(hidden, knots, window.samples);
   const S h(record.step / steps);
-  auto drive = drive_of(bench, h);
+  const std::unique_ptr<ValveDrive<S>> driven_by = drive_of(bench, h);
+  ValveDrive<S>& drive = *driven_by;
   BenchState<S> state = begin(bench, start, drive);
 
   BenchTerms<S> t{};
@@ -200,6 +208,16 @@ void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, 
     }
   }
 }
+
+// Compiled in bench_plant.cpp. What drives the valve is the same code at each scalar, here and in bench_loop.cpp.
+#define SMS_BENCH_IS_DRIVEN(S)                                                                                        \
+  template void BenchPlant::simulate_driven<S>(const Params<S>&, const Window&, int, const DriveOf<S>&, const S*, S*, \
+                                               const S*, int) const
+extern SMS_BENCH_IS_DRIVEN(double);
+extern SMS_BENCH_IS_DRIVEN(ParameterJet);
+extern SMS_PLANT_SIMULATES(BenchPlant, double);
+extern SMS_PLANT_SIMULATES(BenchPlant, ParameterJet);
+extern template class ShootingProblem<BenchPlant>;
 
 }  // namespace estimation
 }  // namespace sms

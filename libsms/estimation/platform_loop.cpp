@@ -1,5 +1,7 @@
 #include "estimation/platform_loop.hpp"
 
+#include "estimation/shooting_search.hpp"
+
 namespace sms {
 namespace estimation {
 
@@ -31,6 +33,10 @@ Eigen::VectorXd PlatformLoopPlant::guess(int record, int first) const {
   }
   return start;
 }
+
+SMS_PLANT_SIMULATES(PlatformLoopPlant, double);
+SMS_PLANT_SIMULATES(PlatformLoopPlant, ParameterJet);
+template class ShootingProblem<PlatformLoopPlant>;
 
 }  // namespace estimation
 }  // namespace sms

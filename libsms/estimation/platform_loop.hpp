@@ -33,19 +33,7 @@ class PlatformLoopPlant : public PlatformPlant {
 
   template <typename S>
   void simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
-                const S* hidden = nullptr, int knots = 0) const {
-    const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
-    const auto controlled = [&](const LegMachines<S>& machines, const S& h) {
-      const auto of_leg = [&](int i) {
-        const HiddenInputs<S> at_output =
-            HiddenInputs<S>(hidden, knots, window.samples).from(PlatformPlant::kHidden + i);
-        return SimulatedController<S>(machines.leg[i], laws(), control_record(window.record, i), window, law_, grid, h,
-                                      start[PlatformPlant::kStart + i], at_output, command_noise_(i));
-      };
-      return LegDrives<S, SimulatedController<S>>{{of_leg(0), of_leg(1), of_leg(2)}};
-    };
-    simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
-  }
+                const S* hidden = nullptr, int knots = 0) const;
 
  private:
   ControlRecord control_record(int record, int leg) const {
@@ -59,6 +47,27 @@ class PlatformLoopPlant : public PlatformPlant {
   std::vector<LegSignals> integral_;  // of each record: before each sample of the controllers as declared, V
   double said_period_;
 };
+
+template <typename S>
+void PlatformLoopPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
+                                 const S* hidden, int knots) const {
+  const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
+  const DrivesOf<S> controlled = [&](const LegMachines<S>& machines, const S& h) {
+    const auto of_leg = [&](int i) {
+      const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(PlatformPlant::kHidden + i);
+      return std::make_unique<SimulatedController<S>>(machines.leg[i], laws(), control_record(window.record, i), window,
+                                                      law_, grid, h, start[PlatformPlant::kStart + i], at_output,
+                                                      command_noise_(i));
+    };
+    return LegDrives<S>{{of_leg(0), of_leg(1), of_leg(2)}};
+  };
+  simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
+}
+
+// Compiled in platform_loop.cpp.
+extern SMS_PLANT_SIMULATES(PlatformLoopPlant, double);
+extern SMS_PLANT_SIMULATES(PlatformLoopPlant, ParameterJet);
+extern template class ShootingProblem<PlatformLoopPlant>;
 
 }  // namespace estimation
 }  // namespace sms

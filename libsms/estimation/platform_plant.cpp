@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "estimation/shooting_search.hpp"
+
 namespace sms {
 namespace estimation {
 namespace {
@@ -119,6 +121,12 @@ MeasuredMotion PlatformPlant::motion(const Params<double> (&leg)[3], const Windo
   }
   return out;
 }
+
+SMS_PLATFORM_IS_DRIVEN(double);
+SMS_PLATFORM_IS_DRIVEN(ParameterJet);
+SMS_PLANT_SIMULATES(PlatformPlant, double);
+SMS_PLANT_SIMULATES(PlatformPlant, ParameterJet);
+template class ShootingProblem<PlatformPlant>;
 
 }  // namespace estimation
 }  // namespace sms

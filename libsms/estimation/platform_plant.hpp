@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -88,9 +89,13 @@ class PlatformPlant {
   const ActuatorLaws& laws() const { return laws_; }
   double longest_step() const { return longest_step_; }
 
-  // As simulate(), in `steps` steps a sample; drives_of(LegMachines, h) makes what drives the valves (LegDrives).
-  template <typename S, typename DrivesOf>
-  void simulate_driven(const LegParams<S>& params, const Window& window, int steps, const DrivesOf& drives_of,
+  // Makes what drives the valves in a simulation by steps of h.
+  template <typename S>
+  using DrivesOf = std::function<LegDrives<S>(const LegMachines<S>& machines, const S& h)>;
+
+  // As simulate(), in `steps` steps a sample.
+  template <typename S>
+  void simulate_driven(const LegParams<S>& params, const Window& window, int steps, const DrivesOf<S>& drives_of,
                        const S* start, S* residual, const S* hidden, int knots) const;
 
  private:
@@ -150,19 +155,19 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
                              const S* hidden, int knots) const {
   const PlatformRecord& record = of(window.record);
   const int steps = detail::steps_over(record.step, longest_step_);
-  const auto recorded = [&](const LegMachines<S>& machines, const S& h) {
+  const DrivesOf<S> recorded = [&](const LegMachines<S>& machines, const S& h) {
     const auto of_leg = [&](int i) {
-      return RecordedCommand<S>(machines.leg[i], laws_, record.command[static_cast<std::size_t>(i)], record.hold,
-                                record.step, window.first, steps, h);
+      return std::make_unique<RecordedCommand<S>>(machines.leg[i], laws_, record.command[static_cast<std::size_t>(i)],
+                                                  record.hold, record.step, window.first, steps, h);
     };
-    return LegDrives<S, RecordedCommand<S>>{{of_leg(0), of_leg(1), of_leg(2)}};
+    return LegDrives<S>{{of_leg(0), of_leg(1), of_leg(2)}};
   };
   simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
 }
 
-template <typename S, typename DrivesOf>
+template <typename S>
 void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& window, int steps,
-                                    const DrivesOf& drives_of, const S* start, S* residual, const S* hidden,
+                                    const DrivesOf<S>& drives_of, const S* start, S* residual, const S* hidden,
                                     int knots) const {
   const PlatformRecord& record = of(window.record);
   const LegMachines<S> machines = machines_of(params, record.conditions);
@@ -243,6 +248,16 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
     }
   }
 }
+
+// Compiled in platform_plant.cpp. What drives the valves is the same code at each scalar, here and in platform_loop.cpp.
+#define SMS_PLATFORM_IS_DRIVEN(S)                                                                              \
+  template void PlatformPlant::simulate_driven<S>(const LegParams<S>&, const Window&, int, const DrivesOf<S>&, \
+                                                  const S*, S*, const S*, int) const
+extern SMS_PLATFORM_IS_DRIVEN(double);
+extern SMS_PLATFORM_IS_DRIVEN(ParameterJet);
+extern SMS_PLANT_SIMULATES(PlatformPlant, double);
+extern SMS_PLANT_SIMULATES(PlatformPlant, ParameterJet);
+extern template class ShootingProblem<PlatformPlant>;
 
 }  // namespace estimation
 }  // namespace sms

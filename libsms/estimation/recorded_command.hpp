@@ -1,5 +1,5 @@
-// The valve of one actuator driven by its record. A controller that is simulated (actuator_controller.hpp) has the same
-// members.
+// What drives the valve of one actuator over a window: its record, or a controller that is simulated
+// (actuator_controller.hpp). A plant is compiled once for both.
 #pragma once
 
 #include "estimation/recorded.hpp"
@@ -8,9 +8,24 @@
 namespace sms {
 namespace estimation {
 
+template <typename S>
+class ValveDrive {
+ public:
+  virtual ~ValveDrive() = default;
+  // Sets spool and drive where the window begins.
+  virtual void begin(ActuatorState<S>& actuator) = 0;
+  // V, `at` counted in samples from the window's first.
+  virtual S at(double at) const = 0;
+  // Step i after sample k of the window begins at this state, which its sensors see: a controller has its say now.
+  virtual void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>& sensors,
+                           BenchState<S>& rate) = 0;
+  // Writes the whitened errors of what it reads itself and returns where the next begin.
+  virtual S* readings(int sample, S* out) const = 0;
+};
+
 // `command_delay` late, straight from sample to sample or held.
 template <typename S>
-class RecordedCommand {
+class RecordedCommand final : public ValveDrive<S> {
  public:
   // For a window from sample `first` on, in `steps` steps of h a sample. Parameters and command have to last.
   RecordedCommand(const Params<S>& p, const ActuatorLaws& laws, const Eigen::VectorXd& command, Hold hold,
@@ -22,18 +37,15 @@ class RecordedCommand {
         steps_(steps),
         h_(h) {}
 
-  // The spool where the window begins.
-  void begin(ActuatorState<S>& actuator) { actuator.spool = voltage_.spool(p_, first_, h_); }
-  // V, `at` counted in samples from the window's first.
-  S at(double at) const { return voltage_.at(first_ + at); }
-  // Step i after sample k of the window begins at this state, which its sensors see: a controller would have its say now.
-  void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>&, BenchState<S>& rate) {
+  void begin(ActuatorState<S>& actuator) override { actuator.spool = voltage_.spool(p_, first_, h_); }
+  S at(double at) const override { return voltage_.at(first_ + at); }
+  void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>&, BenchState<S>& rate) override {
     if (voltage_.is_held()) {
       voltage_.begin_step(first_ + (k + double(i) / steps_));
       drive_rates(p_, laws_, y.actuator, at(0.0), rate.actuator);
     }
   }
-  S* readings(int, S* out) const { return out; }
+  S* readings(int, S* out) const override { return out; }
 
  private:
   const Params<S>& p_;

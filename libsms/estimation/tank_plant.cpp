@@ -1,5 +1,7 @@
 #include "estimation/tank_plant.hpp"
 
+#include "estimation/shooting_search.hpp"
+
 namespace sms {
 namespace estimation {
 namespace {
@@ -51,6 +53,10 @@ Eigen::VectorXd TankPlant::state(const Params<double>& params, const Window& win
       begin(tank, start.data(), command.spool(tank.params, window.first, record.step / steps));
   return vector_of(state);
 }
+
+SMS_PLANT_SIMULATES(TankPlant, double);
+SMS_PLANT_SIMULATES(TankPlant, ParameterJet);
+template class ShootingProblem<TankPlant>;
 
 }  // namespace estimation
 }  // namespace sms

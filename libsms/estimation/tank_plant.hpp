@@ -178,5 +178,10 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   }
 }
 
+// Compiled in tank_plant.cpp.
+extern SMS_PLANT_SIMULATES(TankPlant, double);
+extern SMS_PLANT_SIMULATES(TankPlant, ParameterJet);
+extern template class ShootingProblem<TankPlant>;
+
 }  // namespace estimation
 }  // namespace sms

@@ -79,7 +79,7 @@ TEST_CASE("a record of the model itself leaves nothing, and windows cover it") {
 }
 
 TEST_CASE("derivatives of a simulation are those of differences, by parameter and by initial state") {
-  using Jet = ceres::Jet<double, 1>;
+  using Jet = est::ParameterJet;
   const sms::Params<double> p;
   const int samples = 120;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(samples);

@@ -149,7 +149,7 @@ TEST_CASE("the loop is that of simulate.hpp: published loop, with electronics, s
 }
 
 TEST_CASE("derivatives of a closed loop are those of differences, by parameter and by initial state") {
-  using Jet = ceres::Jet<double, 1>;
+  using Jet = est::ParameterJet;
   sms_test::Random random;
   Case c = some_case(3, random);
   c.p.command_delay = 0.0037;
@@ -197,7 +197,7 @@ TEST_CASE("derivatives of a closed loop are those of differences, by parameter a
 }
 
 TEST_CASE("a delay of nothing changes nothing, and has the slope towards a longer one") {
-  using Jet = ceres::Jet<double, 1>;
+  using Jet = est::ParameterJet;
   sms_test::Random random;
   const Case c = some_case(0, random);
   const Simulated s = simulated(c);

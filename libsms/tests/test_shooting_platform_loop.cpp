@@ -141,7 +141,7 @@ TEST_CASE("a platform's loop is that of simulate.hpp") {
 }
 
 TEST_CASE("derivatives of a platform's loop are those of differences, by parameter, by leg and by initial state") {
-  using Jet = ceres::Jet<double, 1>;
+  using Jet = est::ParameterJet;
   sms_test::Random random;
   const Machine p = some_machine(random);
   const Simulated s = simulated(p);

@@ -82,7 +82,7 @@ TEST_CASE("tank: neutral effects leave a simulation unchanged to the bit, and ot
 }
 
 TEST_CASE("tank: derivatives of a simulation are those of differences, at neutral values and away from them") {
-  using Jet = ceres::Jet<double, 1>;
+  using Jet = est::ParameterJet;
   const int samples = 200;
   const est::TankPlant plant({record_of(Eigen::MatrixXd::Zero(samples, kChannels))}, {100.0, 1.0, 100.0},
                              sms::published_laws(), 1e-3);
