@@ -1,1 +1,1 @@
-"""What makes the files of the repository that nobody writes by hand."""
+"""What makes the files of the repository that nobody writes by hand, and holds one build against another."""
