@@ -178,9 +178,9 @@ class Unexplained:
     rms: dict[str, float]
     """Signal -> rms of the error on records it was not fitted to, in the signal's unit."""
     floor: dict[str, float]
-    """Signal -> of that, what is noise: the declared noise and resolution, or what the records show if that is more."""
+    """Signal -> of that, what is noise: as declared, or what the records show if that is more."""
     tolerated: dict[str, float]
-    """Signal -> rms beyond the noise up to which nothing is called wrong: a part of what all declared uncertainties make."""
+    """Signal -> rms beyond the noise up to which nothing is called wrong."""
     share_of_excess: float
     """Part of the baseline's mean squared error beyond the noise that is left, 0..1."""
     worth_a_word: bool

@@ -39,26 +39,9 @@ SIGNIFICANT = 0.01
 """
 MOST_FITS = 5
 """Effects of a round that are fitted in full, each fit a simulation of every record. Run time."""
-WORTH_A_FIT = 0.3
-"""Share of the largest expected reduction of chi-square that an effect must promise to be fitted. Run time."""
-FAR = 10.0
-"""Chi-square per row from which less has to be promised: one linear step says little of a long way. Blind trials."""
 ALIKE = 0.95
 """Cosine of two sensitivities from which two effects cannot be told apart by them. Judgement."""
-WORTH_A_LOOK = 0.8
-"""Share of the best fit's reduction of chi-square that a fit must reach to be judged on validation records. Run time.
-"""
 
-# ---- Multistart ------------------------------------------------------------------------------------
-
-LARGE_ERROR = 0.5
-"""Of the noise's chi-square: what has to be left beyond it. Judgement."""
-MOST_LEFT = 0.5
-"""Of what is beyond the noise: with more left by all that were fitted, other initial values are tried. Judgement."""
-STARTED_AFAR = 3
-"""Effects that are fitted from several initial values: those that promise most. Run time."""
-MULTIPLES = (0.2, 0.5, 2.0, 5.0)
-"""Of the declared value: initial values of a shifted parameter. Judgement: up to a factor of five either way."""
 
 # ---- Judgement on the validation records -----------------------------------------------------------
 
@@ -66,18 +49,8 @@ WORTH = 0.01
 """Least share of the original squared error beyond the noise floor that a cause must take. Judgement."""
 WORTH_OF_NOISE = 0.02
 """The same as a share of the noise floor itself, for a machine with hardly any error beyond it. Judgement."""
-WORTH_OF_LEFT = 0.5
-"""Share of what the present model leaves beyond the noise that is worth a name in any case. Judgement."""
 TELLS_APART = 3.0
 """Standard errors of the difference of two rivals, over windows, from which the worse is out. Convention: three sigma.
-"""
-NEARLY_EVERY = 0.9
-"""Share of the windows in which a rival leaves more. Blind trials."""
-TELLS_ALIKE_APART = 0.05
-"""Of the best one's reduction of chi-square: what a rival with the same sensitivity must leave more. Blind trials.
-
-A machine differs from any model of it, and a small part of that falls in the direction in which two rivals differ. But
-not more than the best leaves, or any fair description of a machine would: where that is less, it is enough.
 """
 
 # ---- Forward selection and backward elimination ----------------------------------------------------
@@ -90,13 +63,6 @@ UNKNOWN_OF_NOISE = 0.05
 """Least systematic error, as a share of the noise floor's square, for the verdict unknown. Judgement."""
 UNKNOWN_CHANCE = 0.005
 """Largest chance of calling healthy data unknown, for each of two tests. Convention: 1 % in all."""
-NEARLY_AS_GOOD = 0.9
-"""Of the best rival's reduction of chi-square: what another rival has to reach. Judgement."""
-IDLE = 0.02
-"""Of the reduction by all causes: one that adds less to the others has stood in for them, and is dropped. Judgement.
-
-Unless it takes half of what the others leave: beside a very large cause a second one is small and real.
-"""
 
 # ---- Stepwise selection on simulated rigs -----------------------------------------------------------
 
@@ -108,8 +74,9 @@ TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3
 LEAST_SHARE = 0.5
 """Of what is left beyond the noise: what a cause must take. Judgement: most of it."""
 TOLERATED = 0.1
-"""Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description whose
-numbers are known to a few percent, which then fits ten times better than these numbers promise, is not called wrong."""
+"""Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description
+whose numbers are known to a few percent, and which then fits ten times better than that, is not called wrong.
+"""
 WELL, LEAST_OF_NOISE = 1.5, 0.1
 """Of the mean square that the model leaves on records of the healthy machine, and of the noise: what it may leave on
 others. Judgement: the machine is the same, the runs are not."""

@@ -12,7 +12,6 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.diagnosis.hypothesis import Data, Fitted, refitted
-from sms.diagnosis.thresholds import LEFT
 from sms.estimation.windows import Runs
 
 
@@ -38,22 +37,6 @@ class LackOfFit:
     def worst(self) -> float:
         """Of the channel that is worst off, over all records."""
         return float(np.max((self.identify + self.validate) / 2.0))
-
-
-def small(lack: LackOfFit) -> bool:
-    """Whether an error is not worth a word: less than twice what honest descriptions leave."""
-    total, worst = lack.honest
-    return lack.total < 2.0 * total and lack.worst < 2.0 * worst
-
-
-def explained(before: LackOfFit, after: LackOfFit) -> bool:
-    """Whether hardly more is left than any honest description leaves."""
-    total, worst = before.honest
-    return after.total <= _bar(before.total, total) and after.worst <= _bar(before.worst, worst)
-
-
-def _bar(before: float, honest: float) -> float:
-    return honest + LEFT * max(before - honest, 0.0)
 
 
 def lack_of_fit(fitted: Fitted, data: Data) -> LackOfFit:

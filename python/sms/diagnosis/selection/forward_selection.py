@@ -10,7 +10,6 @@ from sms.diagnosis.adequacy.repeatability import Repeatability, repeatability
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, residual_of, unseen
 from sms.diagnosis.result import Verdict
-from sms.diagnosis.selection.backward_elimination import backward_elimination
 from sms.diagnosis.selection.candidates import try_effects
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.validation import Yardstick, ambiguity_group, judge
@@ -40,22 +39,17 @@ def forward_selection(
     floor: float,
     rng: np.random.Generator,
     progress: Progress,
-    enough: Callable[[Fitted], bool] = lambda fitted: False,
 ) -> Outcome:
     """Until nothing more is found: the best effect joins the model, with those that look alike.
 
-    Where a simulation is held against the records, a rival of an earlier cause may come to join it, and in the end all
-    causes are judged in the presence of each other.
-
-    floor: mean square of what no model of the state explains. enough: whether a model leaves so little that nothing
-    more is looked for.
+    floor: mean square of what no model of the state explains. Rigs that are simulated have stepwise.py.
     """
     original = float(np.mean(unseen(baseline, data) ** 2))
     yardstick = Yardstick(original, floor)
     current, rounds = baseline, []
     remaining = list(effects)
     for number in range(1, MOST_CAUSES + 1):
-        if not remaining or enough(current):
+        if not remaining:
             break
         done = 0.1 + 0.75 * number / (MOST_CAUSES + 1)
         progress(f"round {number}: {len(remaining)} effects", done)
@@ -66,11 +60,8 @@ def forward_selection(
         if not members:
             break
         current = members[0].fitted
-        out = members[:1] if data.identify.whitened else members
-        remaining = [e for e in remaining if e.key not in {m.effect.key for m in out}]
+        remaining = [e for e in remaining if e.key not in {m.effect.key for m in members}]
     found = [r.members for r in rounds if r.members]
-    if data.identify.whitened and found:
-        found, current = backward_elimination(found, baseline, data)
     return Outcome(current, rounds, found)
 
 

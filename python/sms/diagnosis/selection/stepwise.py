@@ -1,16 +1,17 @@
 """Forward selection where a simulation is held against the records: which causes stand, one after another.
 
-A machine differs from every model of it, by a percent here and there, all the time and in no direction that has a name.
-So a cause is not asked to explain everything. It is asked to take most of what is left, in nearly every window, on the
-records that it was fitted to and on those that it was not. What it leaves is another question (adequacy/).
+A machine differs from every model of it, by a percent here and there, all the time and in no direction that has a
+name. So a cause is not asked to explain everything. It is asked to take most of what is left, in nearly every window,
+on the records that it was fitted to and on those that it was not. What it leaves is another question (adequacy/).
 
-How much a model leaves is counted by window and signal, in units of the noise, on a logarithmic scale: a window in which
-a piston sticks where the machine slides would outweigh all others in a sum of squares, and it says no more than they do.
+How much a model leaves is counted by window and signal, in units of the noise, on a logarithmic scale: a window in
+which a piston sticks where the machine slides would outweigh all others in a sum of squares, and it says no more than
+they do.
 
-A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and because a linear
-step says nothing of a long way, at a ladder of finite sizes with all else held. Those that promise most are fitted, from
-the better of the two. The best joins the model with whatever cannot be told from it, and so on until nothing stands. In
-the end each cause is taken out again, and must be missed.
+A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and because a
+linear step says nothing of a long way, at a ladder of finite sizes with all else held. Those that promise most are
+fitted, from the better of the two. The best joins the model with whatever cannot be told from it, and so on until
+nothing stands. In the end each cause is taken out again, and must be missed.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, unseen
+from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.thresholds import (
@@ -245,11 +247,25 @@ def judge(
         trial.lower = float(lower.sum())
         trial.p_value = min(1.0, len(trials) * float(wilcoxon(lower, alternative="greater").pvalue))
         trial.reason = _objection(trial, data)
+        if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
+            trial.cross_validated = True
+            trial.reason = _objection(trial, data) or cross_validation.objection(
+                trial.fitted, current, data, 1.0, rng.spawn(1)[0]
+            )
         trial.accepted = not trial.reason
 
 
+def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
+    """Whether the validation records change with the trial by less than is worth a word, and are no worse for it."""
+    honest = data.validate.kind.honest[0]
+    changed_by = cross_validation.change_on_validation(trial.fitted, current, data)
+    return trial.gain_interval[1] >= 0.0 and changed_by < honest
+
+
 def _objection(trial: Trial, data: Data) -> str:
-    """Why the trial is no cause; empty if there is nothing against it."""
+    """Why the trial is no cause; empty if there is nothing against it. Without the validation records where they do not
+    speak.
+    """
     effect, name = trial.effect, trial.effect.parameters[0]
     value = trial.fitted.params[name]
     low, high = effect.plausible_range(data.rig.declared(common_parameter(name)).value)
@@ -262,6 +278,8 @@ def _objection(trial: Trial, data: Data) -> str:
         f"takes {100.0 * trial.seen_share:.0f} % of what is left on the identification records and "
         f"{100.0 * trial.gain:.0f} % on the validation records"
     )
+    if trial.cross_validated:
+        return "" if trial.seen_share >= LEAST_SHARE else taken
     if trial.gain_interval[0] <= 0.0:
         return f"{taken}, where it may be chance"
     if (1.0 - trial.seen_share) * (1.0 - trial.gain) > (1.0 - LEAST_SHARE) ** 2:

@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sms.arrays import Array
 from sms.diagnosis.hypothesis import Data, Fitted, unseen
-from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.thresholds import (
-    ALIKE,
-    NEARLY_EVERY,
-    SIGNIFICANT,
-    TELLS_ALIKE_APART,
-    TELLS_APART,
-    WORTH,
-    WORTH_OF_LEFT,
-    WORTH_OF_NOISE,
-)
-from sms.estimation.block_statistics import interval, resampled, sum_by, weighted_ms
+from sms.diagnosis.thresholds import ALIKE, SIGNIFICANT, WORTH, WORTH_OF_NOISE
+from sms.estimation.block_statistics import interval, resampled, weighted_ms
 from sms.parameters import common_parameter
 from sms.units_display import format_quantity
 
@@ -61,13 +51,6 @@ def judge(
         trial.gain = 1.0 - float(np.mean(trial.squared)) / total
         trial.gain_interval = interval(1.0 - after / resampled_before)
         trial.reason = _objection(trial, before, data, yardstick)
-        if trial.reason in (NO_HELP, WORTH_NOTHING) and _insensitive(
-            trial, current, data, yardstick
-        ):
-            trial.cross_validated = True
-            trial.reason = cross_validation.objection(
-                trial.fitted, current, data, yardstick.floor, rng.spawn(1)[0]
-            )
         trial.accepted = not trial.reason
 
 
@@ -85,24 +68,13 @@ def _objection(trial: Trial, before: Array, data: Data, yardstick: Yardstick) ->
     if trial.gain_interval[0] <= 0.0:
         return NO_HELP
     worth = float(np.mean(before) - np.mean(trial.squared))
-    least = yardstick.least_worth
-    if data.validate.whitened:  # a large error that is already named must not hide a second one
-        least = min(least, WORTH_OF_LEFT * max(float(np.mean(before)) - yardstick.floor, 0.0))
-    if worth < max(least, WORTH_OF_NOISE * yardstick.floor):
+    if worth < max(yardstick.least_worth, WORTH_OF_NOISE * yardstick.floor):
         return WORTH_NOTHING
     for number, name_ in enumerate(m.name for m in data.validate.motions):
         rows = data.validate.record == number
         if float(np.mean(trial.squared[rows]) - np.mean(before[rows])) > worth:
             return f"makes '{name_}' worse by more than it improves the others"
     return ""
-
-
-def _insensitive(trial: Trial, current: Fitted, data: Data, yardstick: Yardstick) -> bool:
-    """Whether unseen records change less with the trial than two honest descriptions differ by, and no worse for it."""
-    if not data.validate.whitened or trial.gain_interval[1] < 0.0:
-        return False
-    honest = data.validate.kind.honest[0] * yardstick.floor
-    return cross_validation.change_on_validation(trial.fitted, current, data) < honest
 
 
 def ambiguity_group(
@@ -116,8 +88,6 @@ def ambiguity_group(
     accepted = [t for t in trials if t.accepted]
     if not accepted:
         return []
-    if data.validate.whitened:
-        return _best_of_runs(accepted, current, data, rng)
     best = max(accepted, key=lambda t: t.gain)
     counts = resampled(data.validate.record, data.validate.block, rng)
     again = [weighted_ms(t.squared, data.validate.block, counts) for t in accepted]
@@ -136,69 +106,3 @@ def _chosen_again(trials: Sequence[Trial], left: Array) -> None:
     best = np.argmin(left, axis=1)
     for k, trial in enumerate(trials):
         trial.support = float(np.mean(best == k))
-
-
-def by_window(seen: Array, unseen: Array, data: Data) -> Array:
-    """Sums of squared residuals (rows,) of identify and validate records over windows, one after the other."""
-    return np.concatenate(
-        [
-            sum_by(part.block, squared, int(part.block.max()) + 1)
-            for part, squared in ((data.identify, seen), (data.validate, unseen))
-        ]
-    )
-
-
-def _best_of_runs(
-    accepted: Sequence[Trial], current: Fitted, data: Data, rng: np.random.Generator
-) -> list[Trial]:
-    """As best_class, where each rival has one parameter and all windows count: seen ones and unseen ones alike."""
-
-    left = {t.effect.key: by_window(t.identified, t.squared, data) for t in accepted}
-    own = rng.spawn(1)[0]
-    counts = np.hstack([resampled(p.record, p.block, own) for p in (data.identify, data.validate)])
-    _chosen_again(accepted, counts @ np.column_stack(list(left.values())))
-    best = min(accepted, key=lambda t: float(left[t.effect.key].sum()))
-    before = by_window(current.fit.residual**2, unseen(current, data) ** 2, data)
-    least = least_difference(float(before.sum()), best.fitted, data)
-    members = []
-    for trial in accepted:
-        alike = best.similarity[trial.effect.key] > ALIKE
-        worse = left[trial.effect.key] - left[best.effect.key]
-        out = told_apart(worse, least if alike else 0.0, left[best.effect.key])
-        if not alike:
-            out = out or _takes_less(trial, best, before, left)
-        if trial is best or not out:
-            members.append(trial)
-    return sorted(members, key=lambda t: t is not best)
-
-
-def _takes_less(trial: Trial, best: Trial, before: Array, left: Mapping[str, Array]) -> bool:
-    """Whether a rival takes less than nine tenths, of all records where those for validation are insensitive."""
-    if not (trial.cross_validated or best.cross_validated):
-        return trial.gain < 0.9 * best.gain
-    takes, most = (float((before - left[t.effect.key]).sum()) for t in (trial, best))
-    return takes < 0.9 * most
-
-
-def told_apart(worse: Array, least: float, best: Array) -> bool:
-    """Whether a rival leaves more than the best, from the differences of chi-square (windows,), and by `least`.
-
-    best: (windows,) that the best leaves. A rival that leaves more than twice that, and more in nearly every window, is
-    out however much the windows differ in size.
-    """
-    if float(worse.sum()) > max(float(best.sum()), least) and np.mean(worse > 0.0) > NEARLY_EVERY:
-        return True
-    scatter = float(np.std(worse) * np.sqrt(len(worse)))
-    return float(worse.sum()) > max(TELLS_APART * scatter, least)
-
-
-def least_difference(before: float, best: Fitted, data: Data) -> float:
-    """Of chi-square, what tells two apart that look alike; `before` is chi-square without either."""
-    left, honest = 0.0, 0.0
-    seen = (data.identify, best.fit.residual), (data.validate, unseen(best, data))
-    for runs, residual in seen:
-        noise = float(np.sum(runs.floor(residual)[runs.channel]))
-        honest += runs.kind.honest[0] * noise
-        left += float(np.sum(residual**2)) - noise
-    after = sum(float(np.sum(residual**2)) for _, residual in seen)
-    return min(TELLS_ALIKE_APART * (before - after), max(left, honest))
