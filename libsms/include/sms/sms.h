@@ -8,6 +8,19 @@
  * The mechanism is in kinematics.h and dynamics.h, its tables in table.h, the plants in plant.h; they come with this
  * header.
  *
+ * Frames (kinematics.h)                           Order of calls
+ *
+ *        R -------- P_i      platform               sms_params_default       every parameter; change what differs
+ *        :           |                              sms_params_check         against its bounds
+ *        :           |  actuator i, or rod             |
+ *        :           |                              sms_..._from_params      geometry, mechanism, bench, platform: made
+ *     O -:--------- B_i ----> x, the roll axis         |                     once, again for other parameters
+ *     |        ground                               sms_..._at_rest          where a run begins
+ *     v z, down                                        |
+ *     y points at the reader                        sms_..._advance          again and again: a command held for a period
+ *                                                      |
+ *     height is that of R above O: -z               sms_..._derivative       or an integrator of one's own
+ *
  * Example: libsms/examples/01_friction.c */
 #ifndef SMS_SMS_H
 #define SMS_SMS_H
