@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Channel', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SignalInfo', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'signal_table', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -59,6 +59,43 @@ class ParameterInfo:
     @property
     def upper(self) -> float:
         ...
+class SignalInfo:
+    """
+    What signals.def says of one signal.
+    """
+    @property
+    def has_sensor(self) -> bool:
+        """
+        There are parameters for the errors of its sensor.
+        """
+    @property
+    def high(self) -> float:
+        """
+        and no more.
+        """
+    @property
+    def label(self) -> str:
+        """
+        of its sensor, in words
+        """
+    @property
+    def low(self) -> float:
+        """
+        What such a sensor usually reads: no less,
+        """
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def of_leg(self) -> bool:
+        """
+        Each actuator of the platform has one.
+        """
+    @property
+    def unit(self) -> str:
+        """
+        SI, as pint reads it
+        """
 class Params:
     """
     Every parameter of the machine in SI units, at its default unless given by keyword.
@@ -687,6 +724,102 @@ class Params:
     def exponential_friction_rate(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def flow_map_feed_1(self) -> float:
+        """
+        relative error of the tables' flow through the port that is fed, at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_feed_1.setter
+    def flow_map_feed_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_feed_2(self) -> float:
+        """
+        relative error of the tables' flow through the port that is fed, at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_feed_2.setter
+    def flow_map_feed_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_feed_3(self) -> float:
+        """
+        relative error of the tables' flow through the port that is fed, at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_feed_3.setter
+    def flow_map_feed_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_feed_4(self) -> float:
+        """
+        relative error of the tables' flow through the port that is fed, at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_feed_4.setter
+    def flow_map_feed_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_feed_5(self) -> float:
+        """
+        relative error of the tables' flow through the port that is fed, at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_feed_5.setter
+    def flow_map_feed_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_feed_6(self) -> float:
+        """
+        relative error of the tables' flow through the port that is fed, at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_feed_6.setter
+    def flow_map_feed_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_1(self) -> float:
+        """
+        relative error of the tables' flow through the port that is vented, at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_1.setter
+    def flow_map_vent_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_2(self) -> float:
+        """
+        relative error of the tables' flow through the port that is vented, at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_2.setter
+    def flow_map_vent_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_3(self) -> float:
+        """
+        relative error of the tables' flow through the port that is vented, at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_3.setter
+    def flow_map_vent_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_4(self) -> float:
+        """
+        relative error of the tables' flow through the port that is vented, at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_4.setter
+    def flow_map_vent_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_5(self) -> float:
+        """
+        relative error of the tables' flow through the port that is vented, at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_5.setter
+    def flow_map_vent_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_6(self) -> float:
+        """
+        relative error of the tables' flow through the port that is vented, at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_6.setter
+    def flow_map_vent_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def frame_compliance(self) -> float:
         """
         frame_compliance: by how much the mount yields per newton, seen by a position sensor that stands on the ground [m/N]; neutral
@@ -765,6 +898,14 @@ class Params:
         """
     @land_width.setter
     def land_width(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def leakage_critical_ratio(self) -> float:
+        """
+        critical pressure ratio of that gap [1]; assumed, a labyrinth of many throttles: 0; one throttle: 0.53
+        """
+    @leakage_critical_ratio.setter
+    def leakage_critical_ratio(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def loop_gain(self) -> float:
@@ -1329,7 +1470,7 @@ class Params:
     @property
     def sensor_gain_chamber_pressure_lower(self) -> float:
         """
-        relative gain error of the lower chamber's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the lower chamber's pressure sensor [1]; neutral
         """
     @sensor_gain_chamber_pressure_lower.setter
     def sensor_gain_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1337,7 +1478,7 @@ class Params:
     @property
     def sensor_gain_chamber_pressure_upper(self) -> float:
         """
-        relative gain error of the upper chamber's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the upper chamber's pressure sensor [1]; neutral
         """
     @sensor_gain_chamber_pressure_upper.setter
     def sensor_gain_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1345,7 +1486,7 @@ class Params:
     @property
     def sensor_gain_extension(self) -> float:
         """
-        relative gain error of the position sensor [1]; neutral
+        sensor_gain: relative gain error of the position sensor [1]; neutral
         """
     @sensor_gain_extension.setter
     def sensor_gain_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1353,7 +1494,7 @@ class Params:
     @property
     def sensor_gain_pitch(self) -> float:
         """
-        relative gain error of the pitch sensor [1]; neutral
+        sensor_gain: relative gain error of the pitch sensor [1]; neutral
         """
     @sensor_gain_pitch.setter
     def sensor_gain_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1361,7 +1502,7 @@ class Params:
     @property
     def sensor_gain_rod_force(self) -> float:
         """
-        relative gain error of the load cell [1]; neutral
+        sensor_gain: relative gain error of the load cell [1]; neutral
         """
     @sensor_gain_rod_force.setter
     def sensor_gain_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1369,7 +1510,7 @@ class Params:
     @property
     def sensor_gain_roll(self) -> float:
         """
-        relative gain error of the roll sensor [1]; neutral
+        sensor_gain: relative gain error of the roll sensor [1]; neutral
         """
     @sensor_gain_roll.setter
     def sensor_gain_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1377,7 +1518,7 @@ class Params:
     @property
     def sensor_gain_supply_pressure(self) -> float:
         """
-        relative gain error of the supply's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the supply's pressure sensor [1]; neutral
         """
     @sensor_gain_supply_pressure.setter
     def sensor_gain_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1385,7 +1526,7 @@ class Params:
     @property
     def sensor_gain_tank_pressure(self) -> float:
         """
-        relative gain error of the tank's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the tank's pressure sensor [1]; neutral
         """
     @sensor_gain_tank_pressure.setter
     def sensor_gain_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1393,7 +1534,7 @@ class Params:
     @property
     def sensor_gain_tank_temperature(self) -> float:
         """
-        relative gain error of the tank's thermocouple, of what is warmer than the supplied air [1]; neutral
+        sensor_gain: relative gain error of the tank's thermocouple [1]; neutral
         """
     @sensor_gain_tank_temperature.setter
     def sensor_gain_tank_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1401,7 +1542,7 @@ class Params:
     @property
     def sensor_lag_chamber_pressure_lower(self) -> float:
         """
-        sensor_lag: by how much the lower chamber's pressure sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the lower chamber's pressure sensor is late [s]; neutral
         """
     @sensor_lag_chamber_pressure_lower.setter
     def sensor_lag_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1409,7 +1550,7 @@ class Params:
     @property
     def sensor_lag_chamber_pressure_upper(self) -> float:
         """
-        sensor_lag: by how much the upper chamber's pressure sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the upper chamber's pressure sensor is late [s]; neutral
         """
     @sensor_lag_chamber_pressure_upper.setter
     def sensor_lag_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1417,7 +1558,7 @@ class Params:
     @property
     def sensor_lag_extension(self) -> float:
         """
-        sensor_lag: by how much the position sensor's filter is late [s]; neutral
+        sensor_lag: by how much the filter of the position sensor is late [s]; neutral
         """
     @sensor_lag_extension.setter
     def sensor_lag_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1425,7 +1566,7 @@ class Params:
     @property
     def sensor_lag_pitch(self) -> float:
         """
-        sensor_lag: by how much the pitch sensor's filter is late [s]; neutral
+        sensor_lag: by how much the filter of the pitch sensor is late [s]; neutral
         """
     @sensor_lag_pitch.setter
     def sensor_lag_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1433,7 +1574,7 @@ class Params:
     @property
     def sensor_lag_roll(self) -> float:
         """
-        sensor_lag: by how much the roll sensor's filter is late [s]; neutral
+        sensor_lag: by how much the filter of the roll sensor is late [s]; neutral
         """
     @sensor_lag_roll.setter
     def sensor_lag_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1441,7 +1582,7 @@ class Params:
     @property
     def sensor_lag_tank_pressure(self) -> float:
         """
-        sensor_lag: by how much the tank's pressure sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the tank's pressure sensor is late [s]; neutral
         """
     @sensor_lag_tank_pressure.setter
     def sensor_lag_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1449,7 +1590,7 @@ class Params:
     @property
     def sensor_offset_chamber_pressure_lower(self) -> float:
         """
-        zero error of the lower chamber's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the lower chamber's pressure sensor [Pa]; neutral
         """
     @sensor_offset_chamber_pressure_lower.setter
     def sensor_offset_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1457,7 +1598,7 @@ class Params:
     @property
     def sensor_offset_chamber_pressure_upper(self) -> float:
         """
-        zero error of the upper chamber's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the upper chamber's pressure sensor [Pa]; neutral
         """
     @sensor_offset_chamber_pressure_upper.setter
     def sensor_offset_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1465,7 +1606,7 @@ class Params:
     @property
     def sensor_offset_extension(self) -> float:
         """
-        zero error of the position sensor [m]; neutral
+        sensor_offset: zero error of the position sensor [m]; neutral
         """
     @sensor_offset_extension.setter
     def sensor_offset_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1473,7 +1614,7 @@ class Params:
     @property
     def sensor_offset_pitch(self) -> float:
         """
-        zero error of the pitch sensor [rad]; neutral
+        sensor_offset: zero error of the pitch sensor [rad]; neutral
         """
     @sensor_offset_pitch.setter
     def sensor_offset_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1481,7 +1622,7 @@ class Params:
     @property
     def sensor_offset_rod_force(self) -> float:
         """
-        zero error of the load cell [N]; neutral
+        sensor_offset: zero error of the load cell [N]; neutral
         """
     @sensor_offset_rod_force.setter
     def sensor_offset_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1489,7 +1630,7 @@ class Params:
     @property
     def sensor_offset_roll(self) -> float:
         """
-        zero error of the roll sensor [rad]; neutral
+        sensor_offset: zero error of the roll sensor [rad]; neutral
         """
     @sensor_offset_roll.setter
     def sensor_offset_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1497,7 +1638,7 @@ class Params:
     @property
     def sensor_offset_supply_pressure(self) -> float:
         """
-        zero error of the supply's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the supply's pressure sensor [Pa]; neutral
         """
     @sensor_offset_supply_pressure.setter
     def sensor_offset_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1505,7 +1646,7 @@ class Params:
     @property
     def sensor_offset_tank_pressure(self) -> float:
         """
-        zero error of the tank's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the tank's pressure sensor [Pa]; neutral
         """
     @sensor_offset_tank_pressure.setter
     def sensor_offset_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1513,7 +1654,7 @@ class Params:
     @property
     def sensor_offset_tank_temperature(self) -> float:
         """
-        zero error of the tank's thermocouple [K]; neutral
+        sensor_offset: zero error of the tank's thermocouple [K]; neutral
         """
     @sensor_offset_tank_temperature.setter
     def sensor_offset_tank_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1862,15 +2003,27 @@ class Params:
     @wall_temperature.setter
     def wall_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
+class Channel:
+    """
+    What a logger's channel makes of a reading: noise, range, rounding (sensor.hpp).
+    """
+    def __init__(self, *, noise: typing.SupportsFloat | typing.SupportsIndex = 0.0, low: typing.SupportsFloat | typing.SupportsIndex = -1.7976931348623157e+308, high: typing.SupportsFloat | typing.SupportsIndex = 1.7976931348623157e+308, resolution: typing.SupportsFloat | typing.SupportsIndex = 0.0, rounding: str = 'nearest') -> None:
+        """
+        noise: standard deviation; low, high: where the reading stays; resolution: step of the converter, which rounds to the "nearest" or "down".
+        """
 class BenchSimulation:
     """
     One actuator under sampled control (simulate.hpp).
     """
-    def __init__(self, *, params: Params, controller: Params, valve_law: str, friction_law: str, chamber_law: str, control: str, compensated: bool, electronics: bool, extension: typing.SupportsFloat | typing.SupportsIndex, load_force: typing.SupportsFloat | typing.SupportsIndex, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, params: Params, controller: Params, valve_law: str, friction_law: str, chamber_law: str, control: str, compensated: bool, electronics: bool, extension: typing.SupportsFloat | typing.SupportsIndex, load_force: typing.SupportsFloat | typing.SupportsIndex, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex, stiff: bool = False, state: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None = None) -> None:
         ...
     def advance(self, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], load: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
         """
         (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
+        """
+    def record(self, rows: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], channels: collections.abc.Sequence[Channel], draws: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; draws (n, readings), standard normal.
         """
     def why(self, status: typing.SupportsInt | typing.SupportsIndex) -> str:
         """
@@ -1887,9 +2040,19 @@ class BenchSimulation:
         Of the plant's derivative, so far.
         """
     @property
+    def readings(self) -> list[str]:
+        """
+        The last of those columns: what the sensors say.
+        """
+    @property
     def rejected(self) -> int:
         """
         Steps that were tried again smaller, so far.
+        """
+    @property
+    def state(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Where the plant is, as the first columns of a row.
         """
     @property
     def steps(self) -> int:
@@ -1905,11 +2068,15 @@ class PlatformSimulation:
     """
     The platform under sampled control (simulate.hpp).
     """
-    def __init__(self, *, params: typing.Annotated[collections.abc.Sequence[Params], "FixedSize(3)"], controller: Params, valve_law: str, friction_law: str, chamber_law: str, masses: typing.SupportsInt | typing.SupportsIndex, control: str, compensated: bool, electronics: bool, q: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], mean_pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, params: typing.Annotated[collections.abc.Sequence[Params], "FixedSize(3)"], controller: Params, valve_law: str, friction_law: str, chamber_law: str, masses: typing.SupportsInt | typing.SupportsIndex, control: str, compensated: bool, electronics: bool, q: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], mean_pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex, stiff: bool = False, state: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None = None) -> None:
         ...
     def advance(self, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], load: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
         """
         (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
+        """
+    def record(self, rows: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], channels: collections.abc.Sequence[Channel], draws: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; draws (n, readings), standard normal.
         """
     def why(self, status: typing.SupportsInt | typing.SupportsIndex) -> str:
         """
@@ -1926,9 +2093,19 @@ class PlatformSimulation:
         Of the plant's derivative, so far.
         """
     @property
+    def readings(self) -> list[str]:
+        """
+        The last of those columns: what the sensors say.
+        """
+    @property
     def rejected(self) -> int:
         """
         Steps that were tried again smaller, so far.
+        """
+    @property
+    def state(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Where the plant is, as the first columns of a row.
         """
     @property
     def steps(self) -> int:
@@ -1944,11 +2121,15 @@ class TankSimulation:
     """
     The tank of the flow test behind its valve (tank.hpp).
     """
-    def __init__(self, *, params: Params, valve_law: str, chamber_law: str, pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, params: Params, valve_law: str, chamber_law: str, pressure: typing.SupportsFloat | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex, stiff: bool = False, state: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None = None) -> None:
         ...
     def advance(self, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], load: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
         """
         (rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).
+        """
+    def record(self, rows: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], channels: collections.abc.Sequence[Channel], draws: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; draws (n, readings), standard normal.
         """
     def why(self, status: typing.SupportsInt | typing.SupportsIndex) -> str:
         """
@@ -1965,9 +2146,19 @@ class TankSimulation:
         Of the plant's derivative, so far.
         """
     @property
+    def readings(self) -> list[str]:
+        """
+        The last of those columns: what the sensors say.
+        """
+    @property
     def rejected(self) -> int:
         """
         Steps that were tried again smaller, so far.
+        """
+    @property
+    def state(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Where the plant is, as the first columns of a row.
         """
     @property
     def steps(self) -> int:
@@ -2217,13 +2408,18 @@ class Window:
     @property
     def samples(self) -> int:
         ...
+    @property
+    def start(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Where the search for its initial state begins.
+        """
 class BenchRecord:
     """
     One evenly sampled record of the rig 'bench'; arrays (n,), SI.
     """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ...) -> None:
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., hold: str = 'linear') -> None:
         """
-        setpoint: of a loop that is simulated, where command may be empty: not measured.
+        setpoint: of a loop that is simulated, where command may be empty: not measured. hold: what the valve has between two samples of the command, "linear" or the "previous" one.
         """
 class BenchProblem(Problem):
     """
@@ -2244,6 +2440,10 @@ class BenchProblem(Problem):
     def settle(self, params: Params) -> None:
         """
         Let later searches for initial states begin at the best ones of these parameters.
+        """
+    def state(self, params: Params, window: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        State of the plant where a window begins, at the initial state found last; simulate_bench and simulate_tank go on from it.
         """
     @property
     def windows(self) -> list[Window]:
@@ -2275,7 +2475,7 @@ class TankPlantRecord:
     """
     One evenly sampled record of the rig 'tank'; arrays (n,), SI, empty where there is no sensor.
     """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> None:
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, hold: str = 'linear') -> None:
         ...
 class TankPlantProblem(Problem):
     """
@@ -2296,6 +2496,10 @@ class TankPlantProblem(Problem):
     def settle(self, params: Params) -> None:
         """
         Let later searches for initial states begin at the best ones of these parameters.
+        """
+    def state(self, params: Params, window: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        State of the plant where a window begins, at the initial state found last; simulate_bench and simulate_tank go on from it.
         """
     @property
     def windows(self) -> list[Window]:
@@ -2379,9 +2583,9 @@ class PlatformRecord:
     """
     One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.
     """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., roll: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., pitch: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"] = ...) -> None:
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"], supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., roll: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., pitch: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, setpoint: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"] = ..., hold: str = 'linear') -> None:
         """
-        setpoint: of a loop that is simulated, where command may be empty: not measured.
+        setpoint: of a loop that is simulated, where command may be empty: not measured. hold: what the valves have between two samples of the commands, "linear" or the "previous" one.
         """
 class PlatformProblem:
     """
@@ -2691,6 +2895,10 @@ def rod_force(params: Params, extension: typing.Annotated[numpy.typing.ArrayLike
 def sampled_extension(params: Params, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> typing.Any:
     """
     What the controller takes for the extension, m: potentiometer, ADC.
+    """
+def signal_table() -> list[SignalInfo]:
+    """
+    Every measured signal, in the order of signals.def.
     """
 def simplified_plant(params: Params, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, mass: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float]:
     """
