@@ -85,18 +85,24 @@ def simulations() -> Iterator[Case]:
     volts, metres = 5.0 + 0.8 * np.sin(12.0 * time), 0.2 + 0.04 * np.sin(9.0 * time)
     laws = itertools.product(VALVE_LAWS, FRICTION_LAWS, CHAMBER_LAWS)
     for number, (valve, friction, chamber) in enumerate(laws):
-        for controller, electronics in (("open_loop", False), ("pid", True), ("state_feedback", False)):
+        for controller, electronics in (
+            ("open_loop", False),
+            ("pid", True),
+            ("state_feedback", False),
+        ):
             yield (
                 f"bench {valve} {friction} {chamber} {controller}",
-                lambda n=number, v=valve, f=friction, c=chamber, k=controller, e=electronics: rows_of(
-                    lambda: simulate_bench(
-                        volts if k == "open_loop" else metres,
-                        controller=k,
-                        electronics=e,
-                        valve_law=v,
-                        friction_law=f,
-                        chamber_law=c,
-                        params=machine(n),
+                lambda n=number, v=valve, f=friction, c=chamber, k=controller, e=electronics: (
+                    rows_of(
+                        lambda: simulate_bench(
+                            volts if k == "open_loop" else metres,
+                            controller=k,
+                            electronics=e,
+                            valve_law=v,
+                            friction_law=f,
+                            chamber_law=c,
+                            params=machine(n),
+                        )
                     )
                 ),
             )
@@ -380,7 +386,13 @@ def other_cases() -> Iterator[Case]:
         return answers_of(
             made,
             machine(number + 10),
-            ["coulomb_force", "viscous_friction", "pressure_friction", "moving_mass", "bore_diameter"],
+            [
+                "coulomb_force",
+                "viscous_friction",
+                "pressure_friction",
+                "moving_mass",
+                "bore_diameter",
+            ],
         )
 
     def spool(number: int, law: str) -> Array:
@@ -391,7 +403,9 @@ def other_cases() -> Iterator[Case]:
             position=1e-3 * (run["spool_voltage"] - 5.0) ** 3 / 25.0,
         )
         return answers_of(
-            _core.SpoolProblem([record], law), machine(number + 10), ["valve_frequency", "spool_cubic_1"]
+            _core.SpoolProblem([record], law),
+            machine(number + 10),
+            ["valve_frequency", "spool_cubic_1"],
         )
 
     for number, law in enumerate(FRICTION_LAWS):
