@@ -32,7 +32,6 @@ Progress = Callable[[float], None]
 VALVE_LAWS = ("iso_0_4_mpa", "iso_0_2_mpa", "classic")
 FRICTION_LAWS = ("acceleration_dependent", "two_branch", "stribeck", "dahl", "lugre")
 CHAMBER_LAWS = ("polytropic", "energy")
-CONTROLLERS = ("open_loop", "pid", "state_feedback")
 _NOT_CONVERGED = 4  # SMS_NOT_CONVERGED of sms.h
 MEAN_PRESSURE = 333e3
 """Pa absolute, mean of both chambers where a run begins: what SPEC measures near mid-stroke."""

@@ -18,13 +18,13 @@ from sms.diagnosis.preparation import make_data
 from sms.diagnosis.related_rigs import related_rigs
 from sms.diagnosis.result import Diagnosis, Finding, NotTestable, Related, Verdict
 from sms.diagnosis.selection.forward_selection import (
-    Outcome,
     Progress,
     decide,
     forward_selection,
     repeats_of,
 )
 from sms.diagnosis.selection.identifiability import identifiable
+from sms.diagnosis.selection.outcome import Outcome
 from sms.diagnosis.simulated import diagnose_plant
 from sms.io import check as data_check
 from sms.io.errors import InputError

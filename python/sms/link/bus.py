@@ -25,11 +25,6 @@ class BusAddress:
     channel: str | None = None  #: None: the usual one; of udp_multicast "239.74.163.2:43114"
     bitrate: int = BITRATE
 
-    @property
-    def inside_this_process(self) -> bool:
-        """Whether nothing outside this process can be on that bus."""
-        return self.interface == "virtual"
-
     def __str__(self) -> str:
         """For a person: "socketcan can0"."""
         return f"{self.interface} {self.options().get('channel', '')}".strip()

@@ -110,10 +110,6 @@ class ShootingProblem:
         """(rows,) predicted less measured over the noise, from the best initial states."""
         return self._flat(self._shoot(params).residual)
 
-    def settle(self, params: Values) -> None:
-        """The best initial states at `params` become where later searches begin."""
-        self._start = self._shoot(params).start
-
     def hidden(self, params: Values, knots: int) -> Array:
         """(rows, equations * knots): derivatives against inputs hidden in the model's equations.
 
