@@ -1,10 +1,10 @@
 """`./dev trials foreign FOLDER`: data sets of another simulator, whose truth lies beside them in `keys/`.
 
 That simulator shares no code with this repository and is nobody's model exactly: its flow is off by a smooth error
-over the opening, its numbers lie anywhere within what the rig files declare. A set is diagnosed blind, then its key is
-opened. An answer is right when every hidden effect is in a named cause, or in a class of at most three, and nothing
-else is named; on a healthy machine when nothing is named; on an effect outside the catalogue when the verdict is
-`unknown` and nothing is named.
+over the opening, its numbers lie anywhere within what the rig files declare. A set is diagnosed blind, then its key
+is opened. An answer is right when every hidden effect is in a named cause, or in a class of at most three, and
+nothing else is named; on a healthy machine when nothing is named; on an effect outside the catalogue when the verdict
+is `unknown` and nothing is named.
 """
 
 from __future__ import annotations

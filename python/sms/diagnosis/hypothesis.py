@@ -145,7 +145,7 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Fitt
     assert data.reference is not None
     h, healthy = hypothesis, fit(hypothesis, data.reference)
     start, free, known = h.start.copy(), dict(h.free), dict(h.known)
-    for name in h.known:
+    for name in [n for n in h.free if n in h.known]:
         start[name] = healthy.params[name]
         width = max(2.0 * healthy.standard_error(name), SAME_MACHINE * h.known[name])
         known[name] = min(width, h.known[name])

@@ -143,7 +143,7 @@ def investigate(
     def enough(fitted: Fitted) -> bool:
         return small(Left.by(fitted, data), least)
 
-    outcome = stepwise_selection(baseline, data, able, rng, progress, enough)
+    outcome = stepwise_selection(baseline, data, able, rng, progress, least)
     before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     adequate = enough(outcome.final)
     found = law = None

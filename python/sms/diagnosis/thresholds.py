@@ -73,6 +73,9 @@ TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3
 """Effects that are fitted in a round, by what finite steps and by what linear steps promise. Run time."""
 LEAST_SHARE = 0.5
 """Of what is left beyond the noise: what a cause must take. Judgement: most of it."""
+NEARLY_ALL = 0.85
+"""The same where what is left is within what is tolerated. Judgement: half of so small an error is imitated
+by many effects, nearly all of it hardly by any."""
 TOLERATED = 0.1
 """Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description
 whose numbers are known to a few percent, and which then fits ten times better than that, is not called wrong.

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.signal import savgol_filter
 
 from sms.arrays import Array
 from sms.io.records import Record
-from sms.io.rig import Rig
+from sms.io.rig import Hold, Rig
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +24,8 @@ class Run:
     gauge: frozenset[str]
     conditions: dict[str, float]
     """Parameter -> by how much it is larger in this run."""
+    hold: Hold = field(default="linear", kw_only=True)
+    """What the command does between two samples: it goes straight to the next, or stays at the previous one."""
 
     @property
     def step(self) -> float:
@@ -36,12 +39,19 @@ class Run:
 
 HELD = 0.9
 """Share of the samples that repeat the one before, from which a command counts as held between samples."""
-DEAD_TIME = {"bench": "command_delay", "platform": "command_delay", "tank": "clock_skew_tank"}
 
 
 def is_held(command: Array) -> bool:
     """Whether a command goes in steps: each value holds until the next sample, and is no ramp towards it."""
     return bool(np.ptp(command) > 0.0 and np.mean(np.diff(command) == 0.0) > HELD)
+
+
+def hold_of(rig: Rig, commands: Mapping[str, Array]) -> Hold:
+    """What these commands do between their samples: as the rig file says, else as the record looks."""
+    for name in commands:
+        if (said := rig.signals[name].hold) is not None:
+            return said
+    return "previous" if commands and all(map(is_held, commands.values())) else "linear"
 
 
 def make_run(rig: Rig, record: Record) -> Run:
@@ -52,19 +62,12 @@ def make_run(rig: Rig, record: Record) -> Run:
         for name, values in record.signals.items()
     }
     source = next(s for s in rig.records if s.name == record.name)
-    time = signals.pop("time")
-    conditions = {n: v - rig.declared(n).value for n, v in source.conditions.items()}
-    if rig.kind in DEAD_TIME and all(
-        is_held(values) for name, values in signals.items() if name.startswith("valve_command")
-    ):
-        half = 0.5 * float(time[-1] - time[0]) / (len(time) - 1)
-        name = DEAD_TIME[rig.kind]
-        conditions[name] = conditions.get(name, 0.0) + half
     return Run(
         record.name,
         record.role,
-        time,
+        signals.pop("time"),
         signals,
         record.gauge,
-        conditions,
+        {n: v - rig.declared(n).value for n, v in source.conditions.items()},
+        hold=hold_of(rig, {n: v for n, v in signals.items() if n.startswith("valve_command")}),
     )

@@ -32,6 +32,7 @@ from sms.io.signals import KINDS, SIGNAL_UNITS, column_name, is_pressure, with_c
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 
+Hold = Literal["previous", "linear"]
 Role = Literal["identify", "validate", "test", "reference"]
 
 
@@ -48,6 +49,7 @@ class SignalSource:
     optional: bool = False  #: a record may lack this column
     noise: float | None = None  #: declared standard deviation of one sample, SI; None: not declared
     resolution: float = 0.0  #: one step of the converter, SI
+    hold: Hold | None = None  #: of a command, between its samples; None: as the record looks
 
 
 @dataclass(frozen=True)
@@ -235,6 +237,8 @@ def _signal(signal: str, table: SignalTable, path: Path) -> SignalSource:
         raise InputError(f"{where}: only a pressure can be gauge; remove gauge = true")
     if table.scale == 0.0:
         raise InputError(f"{where}: scale = 0 leaves nothing of the column; write its real scale")
+    if table.hold is not None and not signal.startswith("valve_command"):
+        raise InputError(f"{where}: only a valve command can have a hold; remove hold")
     noise = None if table.noise is None else _size(signal, table.noise, f"{where}, noise")
     resolution = 0.0
     if table.resolution is not None:
@@ -248,6 +252,7 @@ def _signal(signal: str, table: SignalTable, path: Path) -> SignalSource:
         table.gauge,
         noise=noise,
         resolution=resolution,
+        hold=table.hold,
     )
 
 

@@ -94,6 +94,8 @@ class SignalTable(Table):
     gauge: bool = False
     noise: TextOrNumber | None = None
     resolution: TextOrNumber | None = None
+    hold: Literal["previous", "linear"] | None = None
+    """Of a command: whether it stays at the last sample until the next, or goes straight there."""
 
 
 class ParameterTable(Table):

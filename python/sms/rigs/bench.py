@@ -49,6 +49,7 @@ def record_of(
         pressure_upper=s["chamber_pressure_upper"],
         supply_pressure=s["supply_pressure"] if "supply_pressure" in channels else NOTHING,
         conditions=run.conditions,
+        hold=run.hold,
     )
 
 

@@ -68,6 +68,7 @@ def record_of(
         roll=run.signals["roll"] if both else NOTHING,
         pitch=run.signals["pitch"] if both else NOTHING,
         conditions=run.conditions,
+        hold=run.hold,
     )
 
 

@@ -47,6 +47,7 @@ def _record(run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
         temperature=measured("tank_temperature"),
         supply_pressure=measured("supply_pressure"),
         conditions=run.conditions,
+        hold=run.hold,
     )
 
 

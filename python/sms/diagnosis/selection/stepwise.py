@@ -34,6 +34,7 @@ from sms.diagnosis.thresholds import (
     LEAST_OF_NOISE,
     LEAST_SHARE,
     MOST_CAUSES,
+    NEARLY_ALL,
     SIGNIFICANT,
     TELLS_APART,
     TOLERATED,
@@ -108,6 +109,13 @@ def small(left: Left, least: Array) -> bool:
         float(np.mean(np.maximum(e.mean(axis=0) - 1.0, 0.0) / np.maximum(least, 1e-12))) < 1.0
         for e in (left.identify, left.validate)
     )
+
+
+def nothing_left(left: Left, data: Data) -> bool:
+    """Whether a model leaves hardly more than noise: less than twice what fair descriptions differ by."""
+    total, worst = data.identify.kind.honest
+    beyond = 0.5 * (left.identify.mean(axis=0) + left.validate.mean(axis=0)) - 1.0
+    return float(beyond.mean()) < 2.0 * total and float(beyond.max()) < 2.0 * worst
 
 
 def left_when_well(healthy: Fitted, runs: Runs) -> Array:
@@ -218,11 +226,13 @@ def judge(
     current: Fitted,
     data: Data,
     original: float,
+    needed: float,
     rng: np.random.Generator,
 ) -> None:
     """Whether each trial that was fitted can be a cause; fills gain, its interval, p_value, accepted, reason.
 
-    original: what the baseline left beyond the noise on the validation records.
+    original: what the baseline left beyond the noise on the validation records. needed: share of what is left that a
+    cause must take.
     """
     before = Left.by(current, data)
     left_before = (excess(before.identify), excess(before.validate))
@@ -246,10 +256,10 @@ def judge(
         lower = before.logarithms - after.logarithms
         trial.lower = float(lower.sum())
         trial.p_value = min(1.0, len(trials) * float(wilcoxon(lower, alternative="greater").pvalue))
-        trial.reason = _objection(trial, data)
+        trial.reason = _objection(trial, data, needed)
         if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
             trial.cross_validated = True
-            trial.reason = _objection(trial, data) or cross_validation.objection(
+            trial.reason = _objection(trial, data, needed) or cross_validation.objection(
                 trial.fitted, current, data, 1.0, rng.spawn(1)[0]
             )
         trial.accepted = not trial.reason
@@ -262,7 +272,7 @@ def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
     return trial.gain_interval[1] >= 0.0 and changed_by < honest
 
 
-def _objection(trial: Trial, data: Data) -> str:
+def _objection(trial: Trial, data: Data, needed: float) -> str:
     """Why the trial is no cause; empty if there is nothing against it. Without the validation records where they do not
     speak.
     """
@@ -279,10 +289,10 @@ def _objection(trial: Trial, data: Data) -> str:
         f"{100.0 * trial.gain:.0f} % on the validation records"
     )
     if trial.cross_validated:
-        return "" if trial.seen_share >= LEAST_SHARE else taken
+        return "" if trial.seen_share >= needed else taken
     if trial.gain_interval[0] <= 0.0:
         return f"{taken}, where it may be chance"
-    if (1.0 - trial.seen_share) * (1.0 - trial.gain) > (1.0 - LEAST_SHARE) ** 2:
+    if (1.0 - trial.seen_share) * (1.0 - trial.gain) > (1.0 - needed) ** 2:
         return taken
     return ""
 
@@ -330,19 +340,31 @@ def stepwise_selection(
     effects: Sequence[Effect],
     rng: np.random.Generator,
     progress: Progress,
-    enough: Callable[[Fitted], bool] = lambda fitted: False,
+    least: Array,
 ) -> Outcome:
-    """Until nothing more stands; `enough` says whether a model leaves so little that nothing more is looked for."""
+    """Until nothing more stands, or nothing is left. least: (channels,) mean square beyond the noise that is tolerated.
+
+    Where a model leaves no more than that, only a cause that takes nearly all of it is believed: half of so small an
+    error is taken by many.
+    """
     current, rounds, remaining = baseline, [], list(effects)
     original = excess(Left.by(baseline, data).validate)
     for number in range(1, MOST_CAUSES + 1):
-        if not remaining or enough(current):
+        here = Left.by(current, data)
+        if not remaining or nothing_left(here, data):
             break
         progress(
             f"round {number}: {len(remaining)} effects", 0.1 + 0.75 * number / (MOST_CAUSES + 1)
         )
         trials = try_effects(current, data, remaining, rng)
-        judge(trials, current, data, original, rng)
+        judge(
+            trials,
+            current,
+            data,
+            original,
+            NEARLY_ALL if small(here, least) else LEAST_SHARE,
+            rng,
+        )
         members = ambiguity_group(trials, current, data)
         rounds.append(Round(trials, members))
         if not members:
