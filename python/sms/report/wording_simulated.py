@@ -73,9 +73,8 @@ def remainder_in_words(left: Unexplained, units: Mapping[str, str]) -> str:
         [left.rms[worst], left.floor[worst], left.tolerated[worst]], units[worst]
     )
     said = (
-        f"What is left on the validation records, most of it in {spaced(worst)}: {size} rms against a noise of "
-        f"{noise}, "
-        f"{format_percent(left.share_of_excess)} of the error beyond the noise that there was"
+        f"The residual on the validation records is largest in {spaced(worst)}: {size} RMS at a noise of {noise}, "
+        f"{format_percent(left.share_of_excess)} of the initial error beyond the noise"
     )
     if not left.worth_a_word:
         return f"{said}; that is within what the declared uncertainties make tolerable ({least})."
