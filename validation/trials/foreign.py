@@ -165,7 +165,8 @@ def within(true_values: dict[str, Any], answer: Diagnosis) -> bool | None:
     for number, (parameter, added) in SIZES.items():
         if number not in true_values:
             continue
-        owners: list[Cause | Member] = [m for c in answer.causes for m in (c, *c.alternatives)]
+        owners: list[Cause | Member] = [*answer.causes]
+        owners += [m for c in answer.causes for m in c.alternatives]
         for value in (p for owner in owners for p in owner.parameters):
             if value.name.partition(":")[0] == parameter:
                 truth = float(true_values[number]) + added

@@ -94,7 +94,7 @@ def calibrate(test: Test) -> Calibration:
         return problem.errors(values(x))
 
     def slopes(x: Array) -> Array:
-        return problem.evaluate(values(x), names)[1] * scale
+        return np.asarray(problem.evaluate(values(x), names)[1] * scale)
 
     found = least_squares(
         residual,
