@@ -10,7 +10,7 @@ width the 95 % prediction interval of one more (Student's t): scatter between re
 - a resistor's drop and its linear share: from all other records with that number, of any day and gas; the scatter is
   pooled over all numbers. A number without another record: from a power law of the drop over the number, with its
   scatter.
-- noise: what the model leaves at the most on the others. It is an error of the model as much as of the sensor.
+- noise: rms of what the model leaves on the others. It is an error of the model as much as of the sensor.
 """
 
 from __future__ import annotations
@@ -131,8 +131,9 @@ def known(declared: Setting, judged: Test, calibrations: Sequence[Calibration]) 
 
 
 def noise(judged: Test, calibrations: Sequence[Calibration]) -> float:
-    """m^3: the most that the model leaves on another record."""
-    return max(c.rms for c in calibrations if c.test != judged.name)
+    """m^3: rms of what the model leaves on the other records."""
+    left = [c.rms for c in calibrations if c.test != judged.name]
+    return float(np.sqrt(np.mean(np.square(left))))
 
 
 def _one_more(values: Sequence[float]) -> Known:
