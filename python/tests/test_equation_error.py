@@ -301,9 +301,9 @@ def test_both_ways_in_words() -> None:
     fed = made_up(("force", 0.7, 0.6, 0.8), ("flow of the lower chamber", 0.3, 0.2, 0.4))
     assert "the two methods agree" in two_ways(pointing_to("force"), fed)
     apart = two_ways(pointing_to("flow of the lower chamber"), fed)
-    assert "The two ways point to different equations: then a reading is suspect" in apart
+    assert "The two methods point to different equations: a sensor reading is suspect" in apart
     reading = two_ways(pointing_to("reading of extension"), fed)
-    assert "a reading is suspect, that of extension first" in reading
+    assert "a sensor reading is suspect, that of extension first" in reading
     near = made_up(("force", 0.55, 0.3, 0.8), ("flow of the lower chamber", 0.45, 0.2, 0.7))
     assert agree(pointing_to("flow of the lower chamber"), near)
     quiet = made_up(("force", 1.0, 1.0, 1.0), beyond=False)

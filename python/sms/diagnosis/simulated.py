@@ -56,6 +56,7 @@ from sms.diagnosis.selection.stepwise import (
     energies,
     excess,
     left_when_well,
+    nothing_left,
     small,
     stepwise_selection,
     tolerated,
@@ -141,18 +142,18 @@ def investigate(
         least = left_when_well(healthy, data.reference)
 
     def enough(fitted: Fitted) -> bool:
-        return small(Left.by(fitted, data), least)
+        left = Left.by(fitted, data)
+        return small(left, least) or nothing_left(left, data)
 
     outcome = stepwise_selection(baseline, data, able, rng, progress, least)
     before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     adequate = enough(outcome.final)
     found = law = None
-    if not adequate:
-        law = inconstancy_of(outcome, data)
-        if outcome.found and law is not None:
-            outcome = replace(outcome, named=False)
-        if not outcome.groups:
-            found = inconsistency(baseline, data, able, before.floor)
+    if outcome.found:
+        law = inconstancy_of(outcome, data, adequate)
+        outcome = replace(outcome, named=law is None)
+    if not adequate and not outcome.groups:
+        found = inconsistency(baseline, data, able, before.floor)
     verdict = decide(outcome, adequate) if found is None else "data-fault"
     return Case(data, baseline, outcome, before, after, least, blind, verdict, found, law)
 

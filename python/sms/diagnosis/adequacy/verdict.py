@@ -10,11 +10,12 @@ from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.outcome import Outcome
 
 
-def inconstancy_of(outcome: Outcome, data: Data) -> Inconstancy | Hysteresis | None:
+def inconstancy_of(outcome: Outcome, data: Data, adequate: bool) -> Inconstancy | Hysteresis | None:
     """Of the first class in which nothing is what it is called: how that shows of the one that comes nearest."""
     for members in outcome.found:
         laws = (
-            _not_as_named(m, outcome.final if m is members[0] else m.fitted, data) for m in members
+            _not_as_named(m, outcome.final if m is members[0] else m.fitted, data, adequate)
+            for m in members
         )
         nearest = next(laws)
         if nearest is not None and all(law is not None for law in laws):
@@ -22,14 +23,18 @@ def inconstancy_of(outcome: Outcome, data: Data) -> Inconstancy | Hysteresis | N
     return None
 
 
-def _not_as_named(member: Trial, fitted: Fitted, data: Data) -> Inconstancy | Hysteresis | None:
-    return inconstancy(fitted, member.effect, data) or hysteresis(fitted, member.effect, data)
+def _not_as_named(
+    member: Trial, fitted: Fitted, data: Data, adequate: bool
+) -> Inconstancy | Hysteresis | None:
+    """What leaves no more than is tolerated has the right law as far as can be said; a play is another matter."""
+    changes = None if adequate else inconstancy(fitted, member.effect, data)
+    return changes or hysteresis(fitted, member.effect, data)
 
 
 def decide(outcome: Outcome, adequate: bool) -> Verdict:
     """One of the verdicts, data-fault aside: the causes that stand, whatever they leave; else whether much is wrong."""
     if not outcome.groups:
-        return "no-evidence" if adequate else "unknown"
+        return "no-evidence" if adequate and not outcome.found else "unknown"
     if len(outcome.groups) > 1:
         return "combination"
     return "cause" if len(outcome.groups[0]) == 1 else "class"

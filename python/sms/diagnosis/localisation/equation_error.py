@@ -25,12 +25,12 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from sms import _core
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Fitted, free_of
+from sms.diagnosis.hypothesis import FLOW_MAP, Fitted, free_of
 from sms.diagnosis.result import EquationError, ErrorCurve, FedEquations
 from sms.diagnosis.thresholds import AVERAGE, DRAWS, ENDS, SMOOTHING, STRETCH, TOLERANCE
 from sms.estimation.block_statistics import sum_by
 from sms.estimation.kind import Equations
-from sms.estimation.least_squares import Free, fit_windows
+from sms.estimation.least_squares import Free, changed, fit_windows
 from sms.estimation.problem import Problem
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
@@ -125,10 +125,13 @@ def errors_of(
         s: runs.noise[s] * float(np.sqrt(f)) for s, f in zip(runs.channels, floor, strict=True)
     }
     fed = [feed(runs, run, equations, fitted.params, noise) for run in runs.motions]
-    free = free_of(fitted.hypothesis)
-    felt = _felt(fed, fitted.params, [f.name for f in free])
+    # An error of the tables would take any flow that is missing.
+    free = [f for f in free_of(fitted.hypothesis) if f.name not in FLOW_MAP]
+    neutral = [n for n in FLOW_MAP if n in fitted.hypothesis.free]
+    params = changed(fitted.params, neutral, np.zeros(len(neutral)))
+    felt = _felt(fed, params, [f.name for f in free])
     return fed, [
-        _beyond_parameters(fed, k, fitted.params, [free[i] for i in numbers])
+        _beyond_parameters(fed, k, params, [free[i] for i in numbers])
         for k, numbers in enumerate(felt)
     ]
 

@@ -149,13 +149,14 @@ def try_effects(
     before = unseen(current, data) ** 2
     trials = []
     for k, effect in enumerate(effects):
-        trial = Trial(effect, current, 1.0, before, identified=current.fit.residual**2)
+        by_score = float(scores.p_value[k])
+        trial = Trial(effect, current, by_score, before, identified=current.fit.residual**2)
         if k in chosen:
             fitted = _fitted(effect, current, data, steps[k][1], float(scores.estimate[k]), room[k])
             trial = Trial(
                 effect,
                 fitted,
-                1.0,
+                by_score,
                 unseen(fitted, data) ** 2,
                 identified=fitted.fit.residual**2,
             )
@@ -255,7 +256,8 @@ def judge(
         trial.share = (part * trial.gain, low, high)
         lower = before.logarithms - after.logarithms
         trial.lower = float(lower.sum())
-        trial.p_value = min(1.0, len(trials) * float(wilcoxon(lower, alternative="greater").pvalue))
+        by_rank = len(trials) * float(wilcoxon(lower, alternative="greater").pvalue)
+        trial.p_value = min(1.0, 2.0 * min(by_rank, trial.p_value))
         trial.reason = _objection(trial, data, needed)
         if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
             trial.cross_validated = True
