@@ -307,7 +307,7 @@ def test_both_ways_in_words() -> None:
     near = made_up(("force", 0.55, 0.3, 0.8), ("flow of the lower chamber", 0.45, 0.2, 0.7))
     assert agree(pointing_to("flow of the lower chamber"), near)
     quiet = made_up(("force", 1.0, 1.0, 1.0), beyond=False)
-    assert "no equation shows more by itself" in two_ways(pointing_to("force"), quiet)
+    assert "no single equation has an error beyond noise" in two_ways(pointing_to("force"), quiet)
 
 
 def test_a_hidden_force_in_all_legs_is_that_of_each() -> None:

@@ -82,12 +82,12 @@ def test_the_answer_says_what_is_left_beside_the_cause(tmp_path: Path) -> None:
 def test_with_records_of_the_healthy_machine_a_change_within_what_is_declared_is_found(
     tmp_path: Path,
 ) -> None:
-    """A valve that passes 5 % more is within its declared uncertainty, and more than changed since the machine was well."""
+    """A centre 15 mV off is within what is declared, and more than it can have moved since the machine was well."""
     well, ill = tmp_path / "well", tmp_path / "ill"
     well.mkdir()
     ill.mkdir()
     healthy = load_rig(write_bench(well, 5, {}))
-    file = write_bench(ill, 5, {"mass_flow_gain": 1.58})
+    file = write_bench(ill, 5, {"valve_centre": 5.015})
     assert diagnose(file).verdict == "no-evidence"
     text = file.read_text(encoding="utf-8")
     for number, source in enumerate(healthy.records):
@@ -96,9 +96,8 @@ def test_with_records_of_the_healthy_machine_a_change_within_what_is_declared_is
     file.write_text(text, encoding="utf-8")
     with_reference = diagnose(file)
     (cause,) = with_reference.causes
-    assert "flow_conductance" in cause.members
-    if cause.effect == "flow_conductance":
-        assert cause.parameters[0].value == pytest.approx(1.58, abs=0.02)
+    assert cause.effect == "valve_centre_offset"
+    assert cause.parameters[0].value == pytest.approx(5.015, abs=0.002)
 
 
 def test_a_command_is_held_where_it_goes_in_steps() -> None:
