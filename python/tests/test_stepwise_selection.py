@@ -105,6 +105,7 @@ def test_a_command_is_held_where_it_goes_in_steps() -> None:
     assert not is_held(ramp)
     assert is_held(np.repeat(ramp[::20], 20))
     assert not is_held(np.full(200, 5.0))
+    assert not is_held(np.interp(np.arange(200.0), [0, 90, 95, 200], [5, 5, 6, 6]))  # a short ramp
 
 
 def test_an_answer_is_right_only_with_every_hidden_effect_and_nothing_else() -> None:

@@ -48,6 +48,12 @@ class Hypothesis:
     sample: float = 1.0
     """Standard deviation of a residual: 1 where they are in units of the noise, else that of the declared model."""
 
+    @property
+    def with_exact_maps(self) -> Hypothesis:
+        """The valve's tables taken as they are."""
+        free = {n: bounds for n, bounds in self.free.items() if n not in FLOW_MAP}
+        return replace(self, free=free, known={n: u for n, u in self.known.items() if n in free})
+
     def with_effect(self, effect: Effect) -> Hypothesis:
         """The effect's parameters freed within their bounds."""
         wide = {

@@ -24,6 +24,7 @@ from sms.diagnosis.design.next_experiment import next_experiment
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
 from sms.diagnosis.hypothesis import (
+    FLOW_MAP,
     Data,
     Fitted,
     baseline_hypothesis,
@@ -153,7 +154,9 @@ def investigate(
         law = inconstancy_of(outcome, data, adequate)
         outcome = replace(outcome, named=law is None)
     if not adequate and not outcome.groups:
-        found = inconsistency(baseline, data, able, before.floor)
+        # An error of the tables would take a part of what one record has of its own.
+        plain = fit(hypothesis.with_exact_maps, data.identify)
+        found = inconsistency(plain, data, able, before.floor)
     verdict = decide(outcome, adequate) if found is None else "data-fault"
     return Case(data, baseline, outcome, before, after, least, blind, verdict, found, law)
 
@@ -280,6 +283,9 @@ def _hidden(fitted: Fitted, data: Data, excess: LackOfFit, rng: np.random.Genera
     runs = data.identify
     rows = len(runs.channel) / len(runs.channels)
     chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
-    return estimate_unknown_inputs(
-        runs, nuisance_of(fitted), fitted.fit.residual, fitted.params, chi_square, rng
-    )
+    free = nuisance_of(fitted)
+    for name in (
+        FLOW_MAP
+    ):  # what is missing is looked for beside the tables, not in what they may be off by
+        free = free.without(name)
+    return estimate_unknown_inputs(runs, free, fitted.fit.residual, fitted.params, chi_square, rng)

@@ -42,8 +42,10 @@ HELD = 0.9
 
 
 def is_held(command: Array) -> bool:
-    """Whether a command goes in steps: each value holds until the next sample, and is no ramp towards it."""
-    return bool(np.ptp(command) > 0.0 and np.mean(np.diff(command) == 0.0) > HELD)
+    """Whether a command goes in steps: it mostly repeats, and where it changes it does so between two samples."""
+    moves = np.diff(command) != 0.0
+    in_a_row = np.sum(moves[1:] & moves[:-1])
+    return bool(0.0 < np.mean(moves) < 1.0 - HELD and in_a_row < (1.0 - HELD) * np.sum(moves))
 
 
 def hold_of(rig: Rig, commands: Mapping[str, Array]) -> Hold:
