@@ -15,6 +15,7 @@ from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import Unexplained
 from sms.diagnosis.selection.stepwise import Left, energies, excess, nothing_left, small, tolerated
 from sms.estimation.run import is_held
+from sms.io.check import check_record
 from sms.io.records import load_record
 from sms.io.rig import load_rig
 
@@ -121,3 +122,34 @@ def test_an_answer_is_right_only_with_every_hidden_effect_and_nothing_else() -> 
     assert judged([{"NOTHING"}], [["a"]], "cause") == (False, True)
     assert judged([{"UNKNOWN"}], [], "unknown") == (True, False)
     assert judged([{"UNKNOWN"}], [], "no-evidence") == (False, False)
+
+
+def test_a_floor_that_the_rig_file_declares_is_no_fault(tmp_path: Path) -> None:
+    """A tank's sensor that reads no less than 96 kPa rests there without its noise, and may."""
+    time = np.arange(0.0, 4.0, 0.01)
+    pressure = np.maximum(96e3, 86e3 + 2e5 * np.exp(-3.0 * time))
+    pressure[pressure > 96e3] += np.random.default_rng(1).normal(
+        0.0, 300.0, np.sum(pressure > 96e3)
+    )
+    lines = "\n".join(
+        f"{t:.2f},{4.0 if t > 0.1 else 5.0},{p:.0f}" for t, p in zip(time, pressure, strict=True)
+    )
+    for role in ("identify", "validate"):
+        head = "time [s],valve_command [V],tank_pressure [Pa]"
+        (tmp_path / f"{role}.csv").write_text(f"{head}\n{lines}\n")
+    head = (
+        '[rig]\nkind = "tank"\n[signals]\ntime = "time [s]"\nvalve_command = "valve_command [V]"\n'
+    )
+    head += 'tank_pressure = { column = "tank_pressure [Pa]", noise = "300 Pa" }\n'
+    records = "".join(
+        f"[[records]]\nfile = '{role}.csv'\nrole = '{role}'\nname = '{role}'\n"
+        for role in ("identify", "validate")
+    )
+    faults = []
+    for declared in ("", '[parameters]\ntank_pressure_floor = "96 kPa"\n'):
+        file = tmp_path / "rig.toml"
+        file.write_text(head + declared + records)
+        rig = load_rig(file)
+        record = load_record(rig, rig.records[0])
+        faults.append(sum("declared noise" in f.message for f in check_record(rig, record)))
+    assert faults == [1, 0]

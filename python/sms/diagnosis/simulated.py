@@ -62,6 +62,7 @@ from sms.diagnosis.selection.stepwise import (
     stepwise_selection,
     tolerated,
 )
+from sms.diagnosis.thresholds import LITTLE
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
@@ -151,7 +152,8 @@ def investigate(
     adequate = enough(outcome.final)
     found = law = None
     if outcome.found:
-        law = inconstancy_of(outcome, data, adequate)
+        was, left = (excess(Left.by(f, data).validate) for f in (baseline, outcome.final))
+        law = inconstancy_of(outcome, data, adequate or left < LITTLE * was)
         outcome = replace(outcome, named=law is None)
     if not adequate and not outcome.groups:
         # An error of the tables would take a part of what one record has of its own.

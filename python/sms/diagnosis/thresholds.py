@@ -80,6 +80,8 @@ TOLERATED = 0.1
 """Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description
 whose numbers are known to a few percent, and which then fits ten times better than that, is not called wrong.
 """
+LITTLE = 0.1
+"""Of the initial error: with less left on validation records a cause is not asked for another law. Judgement."""
 WELL, LEAST_OF_NOISE = 1.5, 0.1
 """Of the mean square that the model leaves on records of the healthy machine, and of the noise: what it may leave on
 others. Judgement: the machine is the same, the runs are not."""

@@ -119,7 +119,7 @@ def noisy_channels_that_stand_still(rig: Rig, record: Record) -> Iterator[Findin
             continue
         for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
             share = float(np.mean(values == extreme))
-            if share > CLIPPED_SHARE:
+            if share > CLIPPED_SHARE and not _is_declared(rig, name, float(extreme), source.noise):
                 yield record.finding(
                     "error",
                     int(np.argmax(values == extreme)),
@@ -127,6 +127,16 @@ def noisy_channels_that_stand_still(rig: Rig, record: Record) -> Iterator[Findin
                     f"sits at its {word} value for {100 * share:.0f} % of the record, without its declared noise",
                     "the sensor or its amplifier is saturated; choose another range",
                 )
+
+
+def _is_declared(rig: Rig, name: str, extreme: float, noise: float) -> bool:
+    """Whether the rig file says that this sensor reads no less, or no more."""
+    ends = (f"{name}_floor", f"{name}_ceiling")
+    return any(
+        abs(rig.parameters[end].value - extreme) < 4.0 * noise
+        for end in ends
+        if end in rig.parameters
+    )
 
 
 def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Finding]:
