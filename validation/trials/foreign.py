@@ -21,14 +21,13 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.table import Table
-from scipy.stats import beta
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.result import Cause, Member
 from sms.io.errors import InputError
 from sms.io.write import write_text_atomically
 
 from validation.trials.scoring import LARGEST_CLASS
+from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 
 SIZES: dict[str, tuple[str, float]] = {
     "extra_lap_each_side_V": ("dead_band_change", 0.0),
@@ -101,7 +100,7 @@ def foreign(
             )
             if as_json is not None:
                 write_text_atomically(as_json, json.dumps(as_dict(answers), indent=1) + "\n")
-    console.print(table(answers))
+    console.print(share_table(shares(answers)))
 
 
 def sets_of(folder: Path) -> list[str]:
@@ -174,28 +173,12 @@ def within(true_values: dict[str, Any], answer: Diagnosis) -> bool | None:
     return all(inside) if inside else None
 
 
-def lower_bound(count: int, of: int) -> float:
-    """One-sided 95 % bound below a share (Clopper and Pearson)."""
-    return 0.0 if count == 0 else float(beta.ppf(0.05, count, of - count + 1))
-
-
-def upper_bound(count: int, of: int) -> float:
-    """One-sided 95 % bound above a share."""
-    return 1.0 if count == of else float(beta.ppf(0.95, count + 1, of - count))
-
-
-def shares(answers: Sequence[Answer]) -> list[tuple[str, int, int, float]]:
-    """What is counted: name, count, of, and the one-sided 95 % bound on the side that matters."""
+def shares(answers: Sequence[Answer]) -> list[Share]:
+    """What is counted."""
     nothing = [a for a in answers if a.hidden == ["none"]]
     outside = [a for a in answers if a.hidden[0].startswith("unknown_")]
     known = [a for a in answers if a not in nothing and a not in outside]
     sized = [a for a in known if a.within is not None]
-
-    def at_least(name: str, chosen: Sequence[bool]) -> tuple[str, int, int, float]:
-        return name, sum(chosen), len(chosen), lower_bound(sum(chosen), len(chosen))
-
-    def at_most(name: str, chosen: Sequence[bool]) -> tuple[str, int, int, float]:
-        return name, sum(chosen), len(chosen), upper_bound(sum(chosen), len(chosen))
 
     return [
         at_least("right cause, or a class of at most three with it", [a.right for a in known]),
@@ -206,21 +189,7 @@ def shares(answers: Sequence[Answer]) -> list[tuple[str, int, int, float]]:
     ]
 
 
-def table(answers: Sequence[Answer]) -> Table:
-    """The shares with their bounds."""
-    out = Table("", "count", "of", "share", "one-sided 95 % bound")
-    for name, count, of, bound in shares(answers):
-        share = f"{100.0 * count / of:.0f} %" if of else "-"
-        out.add_row(name, str(count), str(of), share, f"{100.0 * bound:.0f} %" if of else "-")
-    return out
-
-
 def as_dict(answers: Sequence[Answer]) -> dict[str, Any]:
     """Shares and answers for programs."""
-    counted = [
-        {"what": name, "count": count, "of": of, "bound_95": bound}
-        for name, count, of, bound in shares(answers)
-        if of
-    ]
     rows = [asdict(a) for a in sorted(answers, key=lambda a: a.set)]
-    return {"shares": counted, "answers": rows}
+    return {"shares": shares_as_dicts(shares(answers)), "answers": rows}

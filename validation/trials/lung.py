@@ -29,7 +29,7 @@ from sms.diagnosis import Diagnosis, own
 from sms.io.errors import InputError
 from sms.io.write import write_text_atomically
 
-from validation.trials.foreign import judged, lower_bound, upper_bound
+from validation.trials.foreign import judged
 from validation.trials.lung_calibration import Calibration, calibrate, known, noise
 from validation.trials.lung_model import (
     CMH2O,
@@ -43,6 +43,7 @@ from validation.trials.lung_model import (
     model,
     read_tests,
 )
+from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 
 PARAMETERS = {"compliance": "compliance", "resistor_drop": "resistor"}
 """Parameter of the model -> the effect that names a wrong setting of it."""
@@ -112,7 +113,7 @@ def lung(
             )
             if as_json is not None:
                 write_text_atomically(as_json, json.dumps(as_dict(answers), indent=1) + "\n")
-    console.print(table(answers))
+    console.print(share_table(shares(answers)))
 
 
 def questions(tests: Sequence[Test], limit: int | None = None) -> list[tuple[Setting, Test]]:
@@ -171,18 +172,12 @@ def wrong_settings(declared: Setting, true: Setting) -> list[str]:
 # ---- tables ----------------------------------------------------------------------------------------
 
 
-def shares(answers: Sequence[Answer]) -> list[tuple[str, int, int, float]]:
-    """What is counted: name, count, of, and the one-sided 95 % bound on the side that matters (Clopper and Pearson)."""
+def shares(answers: Sequence[Answer]) -> list[Share]:
+    """What is counted."""
     healthy = [a for a in answers if not a.hidden]
     wrong = [a for a in answers if a.hidden]
     one, two = [a for a in wrong if len(a.hidden) == 1], [a for a in wrong if len(a.hidden) == 2]
     within = [w for a in wrong for w in a.within]
-
-    def at_least(name: str, chosen: Sequence[bool]) -> tuple[str, int, int, float]:
-        return name, sum(chosen), len(chosen), lower_bound(sum(chosen), len(chosen))
-
-    def at_most(name: str, chosen: Sequence[bool]) -> tuple[str, int, int, float]:
-        return name, sum(chosen), len(chosen), upper_bound(sum(chosen), len(chosen))
 
     return [
         at_least("right causes, or classes of at most three with them", [a.right for a in wrong]),
@@ -197,15 +192,6 @@ def shares(answers: Sequence[Answer]) -> list[tuple[str, int, int, float]]:
 
 def _quiet(healthy: Sequence[Answer]) -> list[bool]:
     return [a.verdict == "no-evidence" for a in healthy]
-
-
-def table(answers: Sequence[Answer]) -> Table:
-    """The shares with their bounds."""
-    out = Table("", "count", "of", "share", "one-sided 95 % bound")
-    for name, count, of, bound in shares(answers):
-        share = f"{100.0 * count / of:.0f} %" if of else "-"
-        out.add_row(name, str(count), str(of), share, f"{100.0 * bound:.0f} %" if of else "-")
-    return out
 
 
 def calibration_table(calibrations: Sequence[Calibration]) -> Table:
@@ -236,10 +222,5 @@ def calibration_table(calibrations: Sequence[Calibration]) -> Table:
 
 def as_dict(answers: Sequence[Answer]) -> dict[str, Any]:
     """Shares and answers for programs."""
-    counted = [
-        {"what": name, "count": count, "of": of, "bound_95": bound}
-        for name, count, of, bound in shares(answers)
-        if of
-    ]
     rows = [asdict(a) for a in sorted(answers, key=lambda a: (a.measured, a.declared))]
-    return {"shares": counted, "answers": rows}
+    return {"shares": shares_as_dicts(shares(answers)), "answers": rows}
