@@ -237,3 +237,10 @@ class TestWhereTheDataIs:
         path = write_rig(tmp_path, PLAIN_RIG.replace("two.csv", "two.csv.gz"))
         record = load_rig(path).records[1]
         assert (record.name, record.file.name) == ("two", "two.csv")
+
+
+def test_the_hold_of_a_command_is_one_of_two_words_and_of_a_command_only(tmp_path: Path) -> None:
+    wrong = WITH_SIGNALS.replace("scale = -1", 'scale = -1, hold = "nxt"')
+    assert failure(write_rig(tmp_path, wrong)).endswith("known are: previous, linear")
+    other = WITH_SIGNALS.replace("scale = -1", 'scale = -1, hold = "linear"')
+    assert "only a valve command can have a hold" in failure(write_rig(tmp_path, other))

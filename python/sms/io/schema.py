@@ -240,4 +240,8 @@ def _unknown_key(parents: list[str | int], key: str) -> str:
 def _words(parents: list[str | int], key: str) -> list[str]:
     """The words allowed for a key that takes one of a few."""
     annotation: Any = _MODELS[str(parents[0])].model_fields[key].annotation
+    if (
+        type(None) in annotation.__args__
+    ):  # of a key that may be left out, the other half of its type
+        annotation = next(half for half in annotation.__args__ if half is not type(None))
     return [str(word) for word in annotation.__args__]
