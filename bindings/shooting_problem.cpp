@@ -62,22 +62,24 @@ std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::Bench
 
 est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eigen::VectorXd pressure,
                                       Eigen::VectorXd temperature, Eigen::VectorXd supply_pressure,
-                                      const std::map<std::string, double>& conditions, const std::string& hold) {
+                                      const std::map<std::string, double>& conditions, const std::string& hold,
+                                      const std::string& valve) {
   return {step,
           std::move(command),
           std::move(pressure),
           std::move(temperature),
           std::move(supply_pressure),
           conditions_of(conditions),
-          hold_of(hold)};
+          hold_of(hold),
+          valve_law_of(valve)};
 }
 
 std::unique_ptr<TankPlantProblem> make_tank_problem(std::vector<est::TankPlantRecord> records, const Noise& noise,
-                                                    const std::string& valve, const std::string& chambers,
-                                                    double window, double longest_step, int threads) {
+                                                    const std::string& chambers, double window, double longest_step,
+                                                    int threads) {
   const est::TankNoise sizes{noise.at("tank_pressure"), noise.at("tank_temperature"), noise.at("supply_pressure")};
   return std::make_unique<TankPlantProblem>(
-      est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", valve, chambers), longest_step),
+      est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", "iso_0_4_mpa", chambers), longest_step),
       est::WindowOptions{window, kRunUp, threads});
 }
 
@@ -128,12 +130,13 @@ void bind_tank(py::module_& m) {
                                    "is no sensor.")
       .def(py::init(&make_tank_record), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("pressure"),
            py::arg("temperature") = Eigen::VectorXd(), py::arg("supply_pressure") = Eigen::VectorXd(),
-           py::arg("conditions") = std::map<std::string, double>(), py::arg("hold") = "linear");
+           py::arg("conditions") = std::map<std::string, double>(), py::arg("hold") = "linear",
+           py::arg("valve") = "iso_0_4_mpa");
   auto tank = bind_shooting_problem<est::TankPlant, est::Problem>(m, "TankPlantProblem");
   bind_state(tank);
   tank.def(py::init(&make_tank_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
-           py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic", py::arg("window") = 1.0,
-           py::arg("longest_step") = 1e-3, py::arg("threads") = 1,
+           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
+           py::arg("threads") = 1,
            "noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden "
            "inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.");
 }

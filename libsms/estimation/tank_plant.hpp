@@ -24,6 +24,7 @@ struct TankPlantRecord {
   Eigen::VectorXd supply_pressure;                 // empty: not measured
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
   Hold hold = Hold::linear;                        // of the command
+  ValveLaw valve = ValveLaw::iso_0_4_mpa;          // measured at another supply, a tank follows another table
 };
 
 // Standard deviation of one sample.
@@ -107,6 +108,7 @@ S* TankPlant::readings(const TankPlantRecord& record, int sample, const Tank<S>&
 template <typename S>
 Tank<S> TankPlant::tank_of(const Params<S>& params, const TankPlantRecord& record) const {
   Tank<S> tank{params, laws_};
+  tank.laws.valve = record.valve;
   for (const auto& condition : record.conditions) {
     param(tank.params, condition.first) += S(condition.second);
   }

@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 from sms import Params, _core, simulate_tank
 from sms.diagnosis import diagnose
+from sms.diagnosis.preparation import make_data
 from sms.io import write_record
+from sms.io.records import load_record
 from sms.io.rig import load_rig
 from sms.rigs.kinds import KINDS
+
+from validation.random_cases import draw
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 
@@ -47,6 +51,31 @@ def write_tank(folder: Path, seed: int, truth: dict[str, float]) -> Path:
         text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
     (folder / "rig.toml").write_text(text)
     return folder / "rig.toml"
+
+
+@pytest.mark.parametrize("said", ["", '\n[model]\nvalve = "iso_0_4_mpa"\n'])
+def test_a_record_follows_the_table_that_was_measured_at_its_supply(
+    tmp_path: Path, said: str
+) -> None:
+    random = draw("a tank at another supply")
+    time = 1e-3 * np.arange(4000)
+    opening = 1.7 * np.sin(random.uniform(2.0, 4.0) * time) + 0.8 * np.sin(7.0 * time)
+    machine = Params(supply_pressure=286e3, tank_initial_pressure=1.5e5)
+    run = simulate_tank(5.0 + opening, params=machine, valve_law="iso_0_2_mpa")
+    signals = {"time": time[::EVERY], "valve_command": 5.0 + opening[::EVERY]}
+    pressure = run["tank_pressure"][::EVERY]
+    signals["tank_pressure"] = pressure + random.normal(0.0, 300.0, pressure.size)
+    records = ""
+    for role in ("identify", "validate"):
+        write_record(tmp_path / f"{role}.csv", signals)
+        records += f'\n[[records]]\nfile = "{role}.csv"\nrole = "{role}"\n'
+        records += 'conditions = { supply_pressure = "286 kPa" }\n'
+    (tmp_path / "rig.toml").write_text(RIG + said + records)
+    rig = load_rig(tmp_path / "rig.toml")
+    data = make_data(rig, [load_record(rig, source) for source in rig.records])
+    residual, _ = data.identify.problem.evaluate(rig.start())
+    left = float(np.sqrt(np.mean(residual**2)))
+    assert left > 3.0 if said else left < 1.1
 
 
 def test_a_larger_tank_and_a_smaller_flow_are_one_class(tmp_path: Path) -> None:

@@ -47,6 +47,14 @@ def test_the_controller_gets_what_its_sensor_says() -> None:
     assert np.array_equal(run["measured_extension"], run.reading("extension"))
 
 
+def test_a_sensor_says_nothing_below_its_floor() -> None:
+    floor = float(draw("floor of the tank's sensor").uniform(1.2e5, 2e5))
+    params = Params(tank_initial_pressure=4e5, tank_pressure_floor=floor)
+    tank = simulate_tank(np.full(4000, 3.0), params=params)
+    assert tank["tank_pressure"][-1] < floor - 1e4
+    assert np.array_equal(tank.reading("tank_pressure"), np.maximum(tank["tank_pressure"], floor))
+
+
 def test_a_late_clock_moves_a_record_and_nothing_else() -> None:
     late = int(draw("late clock").integers(-40, 40))
     plain, skewed = bench(), bench(clock_skew_extension=late * 1e-3)

@@ -132,6 +132,7 @@ def test_a_tank_simulated_is_what_the_problem_predicts() -> None:
         sensor_gain_tank_temperature=0.1,
         supply_line_resistance=1e6,
         tank_initial_pressure=2e5,
+        tank_pressure_floor=1.9e5,
     )
     n = 400
     command = 5.0 + 1.6 * np.sin(0.021 * np.arange(n)) * np.sin(0.009 * np.arange(n))

@@ -173,7 +173,9 @@ class TankSensors {
   TankSensors(const Tank<S>& tank, const S& step)
       : pressure_(tank_pressure_sensor(tank.params), step),
         temperature_(tank_temperature_sensor(tank.params), step),
-        supply_(supply_pressure_sensor(tank.params), step) {}
+        supply_(supply_pressure_sensor(tank.params), step) {
+    pressure_.limit(tank.params.tank_pressure_floor, tank.params.tank_pressure_ceiling);
+  }
 
   // The thermocouple at a temperature of its own at the first look, K.
   void begin(const S& thermocouple) { temperature_.begin(thermocouple); }

@@ -91,6 +91,13 @@ class Sensor {
     }
   }
 
+  // The ends of its range, in the signal's unit: it says no less and no more.
+  void limit(const S& lowest, const S& highest) {
+    lowest_ = lowest;
+    highest_ = highest;
+    ends_ = true;
+  }
+
   const SensorErrors<S>& errors() const { return errors_; }
   bool follows() const { return follows_; }
 
@@ -116,14 +123,15 @@ class Sensor {
 
   // What it says at this truth, `late` seconds ago.
   S reading(const S& truth, const S& rate, const S& late = S(0)) const {
-    return errors_.reading(follows_ ? late_reading<S>(filtered_, (truth - filtered_) / errors_.lag, late)
-                                    : late_reading<S>(truth, rate, late + errors_.lag));
+    const S said = errors_.reading(follows_ ? late_reading<S>(filtered_, (truth - filtered_) / errors_.lag, late)
+                                            : late_reading<S>(truth, rate, late + errors_.lag));
+    return ends_ ? limited(said, lowest_, highest_) : said;
   }
 
  private:
   SensorErrors<S> errors_{};
-  S step_{0}, filtered_{0}, weight_{0}, before_{0};
-  bool follows_ = false, given_ = false, begun_ = false;
+  S step_{0}, filtered_{0}, weight_{0}, before_{0}, lowest_{0}, highest_{0};
+  bool follows_ = false, given_ = false, begun_ = false, ends_ = false;
 };
 
 // ---- mount and play ----

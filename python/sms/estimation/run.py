@@ -26,6 +26,8 @@ class Run:
     """Parameter -> by how much it is larger in this run."""
     hold: Hold = field(default="linear", kw_only=True)
     """What the command does between two samples: it goes straight to the next, or stays at the previous one."""
+    window: float | None = field(default=None, kw_only=True)
+    """s: of the windows it is cut into; None: as its kind has it."""
 
     @property
     def step(self) -> float:

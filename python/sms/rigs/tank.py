@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -12,9 +13,15 @@ from sms import _core, simulation
 from sms.arrays import Array
 from sms.estimation.kind import Equations, Experiment, Kind
 from sms.estimation.run import Run
+from sms.estimation.run import make_run as make_any_run
+from sms.io.records import Record
 from sms.io.rig import Rig
-from sms.rigs.pneumatic import WINDOW
 
+SHORTEST, LONGEST, PER_RECORD = 1.0, 5.0, 5.0
+"""s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does, and
+the longer a window, the less its initial temperature can imitate a wrong flow."""
+TABLES = {2e5: "iso_0_2_mpa", 4e5: "iso_0_4_mpa"}
+"""Gauge pressure of the supply, Pa, at which a table of the valve was measured."""
 LONGEST_STEP = 1e-3
 """s: of the integration; the spool of 65 Hz needs it."""
 HIDDEN = {"flow of the tank": "kg/s", "supply pressure": "Pa"}
@@ -26,17 +33,32 @@ def make_problem(
 ) -> _core.TankPlantProblem:
     """The records as the core's problem."""
     return _core.TankPlantProblem(
-        records=[_record(run, channels) for run in runs],
+        records=[_record(rig, run, channels) for run in runs],
         noise={s: noise[s] for s in OUTPUTS},
-        valve=rig.model.valve,
         chambers=rig.model.chambers,
-        window=WINDOW,
+        window=max(run.window or SHORTEST for run in runs),
         longest_step=LONGEST_STEP,
         threads=int(os.environ.get("SMS_THREADS", "2")),
     )
 
 
-def _record(run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
+def make_run(rig: Rig, record: Record) -> Run:
+    """A record with its pressures absolute, and the length of its windows."""
+    run = make_any_run(rig, record)
+    length = float(run.time[-1] - run.time[0])
+    return replace(run, window=float(np.clip(length / PER_RECORD, SHORTEST, LONGEST)))
+
+
+def valve_of(rig: Rig, run: Run) -> str:
+    """The law of the valve in one record: as the rig file says, else the table that was measured at the nearest supply."""
+    if "valve" in rig.model.model_fields_set:
+        return rig.model.valve
+    supply = rig.declared("supply_pressure").value + run.conditions.get("supply_pressure", 0.0)
+    gauge = supply - rig.declared("ambient_pressure").value
+    return TABLES[min(TABLES, key=lambda p: abs(p - gauge))]
+
+
+def _record(rig: Rig, run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
     def measured(signal: str) -> Array:
         return run.signals[signal] if signal in channels else np.empty(0)
 
@@ -48,6 +70,7 @@ def _record(run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
         supply_pressure=measured("supply_pressure"),
         conditions=run.conditions,
         hold=run.hold,
+        valve=valve_of(rig, run),
     )
 
 
@@ -74,7 +97,7 @@ def make_equations(rig: Rig, run: Run, measured: Mapping[str, Array]) -> _core.T
         temperature=measured.get("tank_temperature", none),
         supply_pressure=measured.get("supply_pressure", none),
         conditions=run.conditions,
-        valve=rig.model.valve,
+        valve=valve_of(rig, run),
         chambers=rig.model.chambers,
     )
 
@@ -147,6 +170,8 @@ def simulated(
 ) -> Run | None:
     """The record of a run from little above ambient; a tank stays below its supply whatever the command."""
     period = 1e-3
+    changes = {"supply_pressure": supply_change} if supply_change != 0.0 else {}
+    planned = Run("proposed", "identify", np.empty(0), {}, frozenset(), changes)
     machine = params.copy()
     machine["supply_pressure"] = machine["supply_pressure"] + supply_change
     machine["tank_initial_pressure"] = machine["ambient_pressure"] + 5e4
@@ -157,7 +182,7 @@ def simulated(
         run = simulation.simulate_tank(
             command,
             params=machine,
-            valve_law=rig.model.valve,
+            valve_law=valve_of(rig, planned),
             chamber_law=rig.model.chambers,
             tolerance=TOLERANCE,
         )
@@ -166,8 +191,7 @@ def simulated(
     pick = slice(None, None, round(STEP / period))
     names = ("valve_command", *(s for s in OUTPUTS if s in channels))
     signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
-    changes = {"supply_pressure": supply_change} if supply_change != 0.0 else {}
-    return Run("proposed", "identify", time[pick], signals, frozenset(), changes)
+    return replace(planned, time=time[pick], signals=signals)
 
 
 MENU = (
@@ -216,4 +240,5 @@ TANK = Kind(
     shown=("tank_pressure", "valve_command"),
     menu=MENU,
     equations=EQUATIONS,
+    make_run=make_run,
 )
