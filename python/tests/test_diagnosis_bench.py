@@ -112,7 +112,7 @@ def test_screening_finds_the_column_that_is_there_and_none_where_there_is_none()
     random = draw("screening")
     n, blocks = 2000, np.repeat(np.arange(20), 100)
     columns = random.normal(size=(n, 30))
-    free = Nuisance(["a", "b"], random.normal(size=(n, 2)), np.zeros(2), np.zeros(2))
+    free = Nuisance(["a", "b"], random.normal(size=(n, 2)), np.zeros((2, 2)), np.zeros(2))
     sensitivity = project(free, columns, [f"c{k}" for k in range(30)])
     basis = free.basis()
     allowed = np.ones((30, 2), dtype=np.bool_)
@@ -140,7 +140,7 @@ def test_a_known_parameter_is_no_rival_beyond_its_uncertainty() -> None:
     column = np.sin(np.linspace(0.0, 9.0, 500))[:, None]
     same = column.copy()
     for pull, left in ((0.0, 0.0), (1e6, 1.0)):
-        rest = project(Nuisance(["a"], same, np.array([pull]), np.zeros(1)), column, ["b"])
+        rest = project(Nuisance(["a"], same, np.array([[pull]]), np.zeros(1)), column, ["b"])
         assert np.linalg.norm(rest) / np.linalg.norm(column) == pytest.approx(left, abs=1e-3)
 
 
@@ -195,7 +195,7 @@ def test_an_estimate_beyond_all_reason_promises_what_it_takes_within() -> None:
     wave = np.sin(np.arange(600) / 7.0)
     residual = -wave + rng.normal(0.0, 0.01, 600)
     sensitivity = np.column_stack([wave + 0.3 * np.cos(np.arange(600) / 3.0), 1e-3 * wave])
-    none = Nuisance([], np.empty((600, 0)), np.empty(0), np.empty(0))
+    none = Nuisance([], np.empty((600, 0)), np.empty((0, 0)), np.empty(0))
     allowed = np.ones((2, 2), dtype=np.bool_)
     found = score_tests(sensitivity, none, residual, block, allowed, rng, draws=99)
     assert found.gain[1] > found.gain[0]

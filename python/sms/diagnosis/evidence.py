@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sms import _core
 from sms.arrays import Array, Index
 from sms.diagnosis.adequacy.repeatability import Repeatability, arrangement
 from sms.diagnosis.hypothesis import (
@@ -17,7 +16,6 @@ from sms.diagnosis.hypothesis import (
     refitted,
     refitted_on,
     residual_of,
-    residual_on,
 )
 from sms.diagnosis.localisation.ripple import find_ripple
 from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Remainder, Series
@@ -141,8 +139,11 @@ def gains(
     out: list[Gain] = []
     for runs in (data.validate, data.test):
         if runs is not None:
-            before, after = (residual_on(f, data, runs) for f in (baseline, extended))
-            out += gains_on(runs, before, after, floor, rng)
+            held = tuple(residual_of(runs, f.params) for f in (baseline, extended))
+            moved = held
+            if runs.whitened:
+                moved = tuple(_refitted(f, data, runs).fit.residual for f in (baseline, extended))
+            out += gains_on(runs, held, moved, floor, rng)
     return tuple(out)
 
 
@@ -164,12 +165,17 @@ def gain_of(
     counts: Array,
     floor: float,
     scale: float = 1.0,
+    refitted: tuple[float, float] | None = None,
 ) -> Gain:
-    """From squared errors (rows,) of one record and signal, and resamples of its blocks; `scale` gives the unit."""
+    """From squared errors (rows,) of one record and signal, and resamples of its blocks; `scale` gives the unit.
+
+    refitted: mean squares without and with the extension, refitted; the same as the others if left out.
+    """
     change = 1.0 - np.sqrt(
         weighted_ms(after, block, counts) / np.maximum(weighted_ms(before, block, counts), 1e-300)
     )
     rms_b, rms_e = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
+    again = (rms_b, rms_e) if refitted is None else np.sqrt(refitted)
     return Gain(
         where.record,
         where.signal,
@@ -180,13 +186,19 @@ def gain_of(
         1.0 - rms_e / rms_b,
         *interval(change),
         where.role,
+        *(scale * float(rms) for rms in again),
     )
 
 
 def gains_on(
-    runs: Runs, before: Array, after: Array, floor: Array, rng: np.random.Generator
+    runs: Runs,
+    held: Sequence[Array],
+    refitted: Sequence[Array],
+    floor: Array,
+    rng: np.random.Generator,
 ) -> Iterator[Gain]:
-    """From residuals (rows,) without and with an extension."""
+    """From residuals (rows,) without and with an extension, the fitted values held, and refitted."""
+    before, after = held
     counts = resampled(runs.record, runs.block, rng)
     for number, run in enumerate(runs.motions):
         for c, channel in enumerate(runs.channels):
@@ -195,7 +207,9 @@ def gains_on(
             own = counts[:, np.unique(runs.block[rows])]
             block = np.unique(runs.block[rows], return_inverse=True)[1]
             lowest, noise = float(np.sqrt(floor[c])), runs.noise[channel]
-            yield gain_of(where, before[rows] ** 2, after[rows] ** 2, block, own, lowest, noise)
+            squares = before[rows] ** 2, after[rows] ** 2
+            again = float(np.mean(refitted[0][rows] ** 2)), float(np.mean(refitted[1][rows] ** 2))
+            yield gain_of(where, *squares, block, own, lowest, noise, again)
 
 
 def remainder_of(
@@ -218,14 +232,14 @@ def remainder_of(
 def series_of(baseline: Fitted, final: Fitted, data: Data) -> tuple[Series, ...]:
     """Measured and predicted curves of all records: identify, validate, test."""
     parts = [part for part in (data.identify, data.validate, data.test) if part is not None]
-    return tuple(s for part in parts for s in _series(part, baseline, final, data))
+    return tuple(s for part in parts for s in _series(part, baseline, final))
 
 
-def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Series]:
+def _series(part: Runs, baseline: Fitted, final: Fitted) -> list[Series]:
     """Measured and predicted curves of one role, window by window from the best initial states."""
     whole = part.whole
     base, extended = (
-        whole.problem.errors(_params_on(fitted, data, part)) for fitted in (baseline, final)
+        whole.problem.errors(fitted.params) for fitted in (baseline, final)
     )
     out = []
     for number, run in enumerate(part.motions):
@@ -254,11 +268,8 @@ def _series(part: Runs, baseline: Fitted, final: Fitted, data: Data) -> list[Ser
     return out
 
 
-def _params_on(fitted: Fitted, data: Data, part: Runs) -> _core.Params:
-    """The model on records of one role: what is known may move within what is declared where they are simulated."""
-    if part is data.identify or not part.whitened:
-        return fitted.params
-    return (refitted(fitted, data) if part is data.validate else refitted_on(fitted, part)).params
+def _refitted(fitted: Fitted, data: Data, runs: Runs) -> Fitted:
+    return refitted(fitted, data) if runs is data.validate else refitted_on(fitted, runs)
 
 
 def _along(kind: Kind, run: Run) -> dict[str, Array]:

@@ -15,8 +15,9 @@ from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.estimation.block_statistics import covariance_of, project_off
-from sms.estimation.least_squares import Free, Solution, changed
-from sms.estimation.nuisance import Nuisance, pulls
+from sms.estimation.discrepancy import Discrepancy
+from sms.estimation.least_squares import MOST_STEPS, Free, Solution, changed
+from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import PARAMETERS, Parameter
@@ -24,8 +25,11 @@ from sms.parameters import PARAMETERS, Parameter
 FLOW_MAP = tuple(n for n in PARAMETERS if n.startswith("flow_map_"))
 ALWAYS_UNCERTAIN = ("stiction_shape", *FLOW_MAP)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
-REFIT_STEPS = 3
-"""Of least squares on records that were not fitted: what is known moves little there. Run time."""
+TURNS, SETTLED = 2, 0.2
+"""Of parameters and discrepancy, each for the other; and the change of the logarithm of tau that ends it. Run time."""
+REFIT_STEPS, REFIT_NEAR = 3, 1
+"""Jacobians of least squares on records that were not fitted: what is known moves little there; and with those of a model
+nearby to begin with. Run time."""
 SAME_MACHINE = 0.1
 """Of what is declared: by how much a number may differ between a day when the machine was well and today. Judgement."""
 WIDE = 3.0
@@ -45,6 +49,8 @@ class Hypothesis:
     causes: tuple[Effect, ...] = ()
     table: Mapping[str, Parameter] = field(default_factory=lambda: PARAMETERS, repr=False)
     """Bounds and units of every parameter."""
+    joint: Joint | None = None
+    """How the errors of what is in `known` go together; None: independent."""
     sample: float = 1.0
     """Standard deviation of a residual: 1 where they are in units of the noise, else that of the declared model."""
 
@@ -54,11 +60,14 @@ class Hypothesis:
         free = {n: bounds for n, bounds in self.free.items() if n not in FLOW_MAP}
         return replace(self, free=free, known={n: u for n, u in self.known.items() if n in free})
 
-    def with_effect(self, effect: Effect) -> Hypothesis:
-        """The effect's parameters freed within their bounds."""
+    def with_effect(self, effect: Effect, plausible: tuple[float, float] | None = None) -> Hypothesis:
+        """The effect's parameters freed within their bounds, its first one within what is plausible if that is given."""
         wide = {
             name: (self.table[name].lower, self.table[name].upper) for name in effect.parameters
         }
+        if plausible is not None:
+            low, high = wide[effect.parameters[0]]
+            wide[effect.parameters[0]] = max(low, plausible[0]), min(high, plausible[1])
         known = {name: u for name, u in self.known.items() if name not in wide}
         return replace(self, free=self.free | wide, known=known, causes=(*self.causes, effect))
 
@@ -71,12 +80,18 @@ class Fitted:
     fit: Solution
     covariance: Array
     """(free, free), robust to correlation within blocks; zero rows for a parameter at its bound."""
+    discrepancy: Discrepancy | None = field(default=None, repr=False, compare=False)
+    """With whose covariance it was fitted; None: noise alone."""
     columns: dict[str, Array] = field(default_factory=dict, repr=False, compare=False)
     """Effect -> (rows,) change of the residual with it, as far as they have been worked out (visible.raw_columns)."""
 
     @property
     def params(self) -> _core.Params:
         return self.fit.params
+
+    def whiten(self, values: Array) -> Array:
+        """Residuals or sensitivities (rows, ...) of the records it was fitted to, as independent as noise."""
+        return values if self.discrepancy is None else self.discrepancy.whitener().whiten(values)
 
     def standard_error(self, name: str) -> float:
         k = list(self.hypothesis.free).index(name)
@@ -101,8 +116,10 @@ class Data:
     """Records on which gains are reported and nothing is decided."""
     reference: Runs | None = None
     """Records of the same machine when it was known to be well."""
-    unseen_of: dict[int, tuple[Fitted, Fitted]] = field(default_factory=dict, repr=False)
+    unseen_of: dict[int, tuple[Fitted, Array]] = field(default_factory=dict, repr=False)
     """What `unseen` has worked out already."""
+    refitted_of: dict[int, tuple[Fitted, Fitted]] = field(default_factory=dict, repr=False)
+    """What `refitted` has worked out already."""
 
 
 # ---- fits ----------------------------------------------------------------------------------------
@@ -145,35 +162,82 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
 def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Fitted]:
     """What records of the healthy machine tell of it: where its numbers lie, and how much nearer than was declared.
 
-    The others are then asked what has changed. A number is known to two standard errors, at best to a tenth of what was
-    declared: a machine is not quite the same from day to day.
+    The others are then asked what has changed. Such records tell combinations of the numbers far better than each (the
+    flow at an opening, not its gain and its table apart), so what they tell is a covariance. To its diagonal a tenth of
+    what was declared is added: a machine is not quite the same from day to day.
     """
     assert data.reference is not None
-    h, healthy = hypothesis, fit(hypothesis, data.reference)
+    h, healthy = hypothesis, fit_with_discrepancy(hypothesis, data.reference)
+    names = [n for n in h.free if n in h.known]
+    place = [list(h.free).index(n) for n in names]
+    declared = np.array([h.known[n] for n in names])
+    covariance = healthy.covariance[np.ix_(place, place)] + np.diag((SAME_MACHINE * declared) ** 2)
+    shrink = np.minimum(declared / np.sqrt(np.diag(covariance)), 1.0)
+    covariance *= np.outer(shrink, shrink)
     start, free, known = h.start.copy(), dict(h.free), dict(h.known)
-    for name in [n for n in h.free if n in h.known]:
-        start[name] = healthy.params[name]
-        width = max(2.0 * healthy.standard_error(name), SAME_MACHINE * h.known[name])
-        known[name] = min(width, h.known[name])
-        room = WIDE * known[name]
-        bounds = h.table[name]
+    for name, variance in zip(names, np.diag(covariance), strict=True):
+        start[name], known[name] = healthy.params[name], float(np.sqrt(variance))
+        room, bounds = WIDE * known[name], h.table[name]
         free[name] = (max(bounds.lower, start[name] - room), min(bounds.upper, start[name] + room))
-    return replace(h, start=start, free=free, known=known), healthy
+    joint = Joint(tuple(names), covariance)
+    return replace(h, start=start, free=free, known=known, joint=joint), healthy
 
 
 def fit(
     hypothesis: Hypothesis,
     runs: Runs,
     initial: _core.Params | None = None,
-    most_steps: int | None = None,
+    most_steps: int = MOST_STEPS,
+    slopes: Mapping[str, Array] | None = None,
+    discrepancy: Discrepancy | None = None,
 ) -> Fitted:
-    """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks."""
+    """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks.
+
+    most_steps: Jacobians that are worked out at most. slopes: parameter -> (rows,) change of the residual with it near the initial ones, of all that are free.
+    """
     free = free_of(hypothesis)
-    found = runs.fit(initial or hypothesis.start, free, most_steps)
-    covariance = _covariance(found, free, runs)
+    names = [f.name for f in free]
+    columns = None if slopes is None else np.column_stack([slopes[n] for n in names])
+    pull = weights_of(hypothesis, names)
+    found = runs.fit(initial or hypothesis.start, free, pull, most_steps, columns, discrepancy)
+    fitted = Fitted(hypothesis, found, np.empty((0, 0)), discrepancy)
+    covariance = _covariance(fitted, pull, runs)
     held = np.array(found.at_bound, dtype=bool)
     covariance[held, :] = covariance[:, held] = 0.0
-    return Fitted(hypothesis, found, covariance)
+    return replace(fitted, covariance=covariance)
+
+
+def fit_with_discrepancy(
+    hypothesis: Hypothesis,
+    runs: Runs,
+    initial: _core.Params | None = None,
+    near: Discrepancy | None = None,
+    slopes: Mapping[str, Array] | None = None,
+) -> Fitted:
+    """Generalised least squares: parameters and the size of what no parameter explains, in turn (discrepancy.py).
+
+    near: that of a model like it, whose sensitivities to the hidden inputs serve here too. Where residuals are not in
+    units of the noise, plain least squares.
+    """
+    params = initial or hypothesis.start
+    if not runs.whitened:
+        return fit(hypothesis, runs, params)
+    now = near or runs.discrepancy(params, residual_of(runs, params))
+    return settled(fit(hypothesis, runs, params, slopes=slopes, discrepancy=now), runs)
+
+
+def settled(fitted: Fitted, runs: Runs) -> Fitted:
+    """The same hypothesis with the discrepancy that it leaves itself, and fitted again with that."""
+    for _ in range(TURNS):
+        before = fitted.discrepancy
+        if before is None:
+            return fitted
+        now = before.fitted_to(fitted.fit.residual)
+        slopes = dict(zip(fitted.hypothesis.free, fitted.fit.jacobian.T, strict=True))
+        if np.all(np.abs(np.log(now.tau / before.tau)) < SETTLED):
+            break
+        fitted = fit(fitted.hypothesis, runs, fitted.params, slopes=slopes, discrepancy=now)
+    return fitted
 
 
 def free_of(hypothesis: Hypothesis) -> list[Free]:
@@ -185,9 +249,14 @@ def free_of(hypothesis: Hypothesis) -> list[Free]:
     ]
 
 
-def _covariance(found: Solution, free: list[Free], runs: Runs) -> Array:
+def weights_of(hypothesis: Hypothesis, names: list[str]) -> Array:
+    """(names, names): rows that pull parameters to what is declared."""
+    return hypothesis.sample * pulls(names, hypothesis.known, hypothesis.joint)
+
+
+def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     """(free, free). Without a declared noise the blocks alone say how sure an estimate is."""
-    covariance = np.zeros((len(free), len(free)))
+    found, covariance = fitted.fit, np.zeros((pull.shape[1], pull.shape[1]))
     if not runs.whitened:
         moved = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
         if len(moved):
@@ -195,10 +264,11 @@ def _covariance(found: Solution, free: list[Free], runs: Runs) -> Array:
                 found.jacobian[:, moved], found.residual, runs.block
             )
         return covariance
-    pull = np.array([f.pull for f in free])
-    bread = np.linalg.pinv(found.jacobian.T @ found.jacobian + np.diag(pull**2), hermitian=True)
-    noise = max(float(np.mean(found.residual**2)), 1e-12)
-    robust = covariance_of(found.jacobian, found.residual, runs.block) if free else bread
+    white = fitted.whiten(np.column_stack([found.jacobian, found.residual]))
+    jacobian, residual = white[:, :-1], white[:, -1]
+    bread = np.linalg.pinv(jacobian.T @ jacobian + pull.T @ pull, hermitian=True)
+    noise = max(float(np.mean(residual**2)), 1e-12)
+    robust = covariance_of(jacobian, residual, runs.block) if pull.size else bread
     # With more parameters than windows the robust one has too low a rank: the larger of the two variances holds.
     inflate = np.sqrt(np.maximum(np.diag(robust) / np.maximum(np.diag(noise * bread), 1e-300), 1.0))
     inflate = np.minimum(inflate, 10.0)
@@ -211,37 +281,39 @@ def residual_of(runs: Runs, params: _core.Params) -> Array:
 
 
 def unseen(fitted: Fitted, data: Data) -> Array:
-    """(rows,) residuals on the validate records; what was found on the identify records stays."""
-    return residual_on(fitted, data, data.validate)
-
-
-def residual_on(fitted: Fitted, data: Data, runs: Runs) -> Array:
-    """(rows,) residuals on the validate or test records.
-
-    Where a simulation is held against them, the known parameters may move within their declared uncertainty on these
-    records too (another day, another temperature).
-    """
-    if not runs.whitened:
-        return residual_of(runs, fitted.params)
-    at = refitted(fitted, data) if runs is data.validate else refitted_on(fitted, runs)
-    return at.fit.residual
+    """(rows,) residuals on the validate records, every value that was fitted to the identify records held."""
+    if id(fitted) not in data.unseen_of:
+        data.unseen_of[id(fitted)] = (fitted, residual_of(data.validate, fitted.params))
+    return data.unseen_of[id(fitted)][1]
 
 
 def refitted(fitted: Fitted, data: Data) -> Fitted:
     """The model on the validate records, its causes held."""
-    if id(fitted) not in data.unseen_of:
-        data.unseen_of[id(fitted)] = (fitted, refitted_on(fitted, data.validate))
-    return data.unseen_of[id(fitted)][1]
+    if id(fitted) not in data.refitted_of:
+        before = next((at for _, at in data.refitted_of.values()), None)
+        data.refitted_of[id(fitted)] = (fitted, refitted_on(fitted, data.validate, before))
+    return data.refitted_of[id(fitted)][1]
 
 
-def refitted_on(fitted: Fitted, runs: Runs) -> Fitted:
-    """The model on other records: what is known may move there too, its causes are held."""
+def refitted_on(fitted: Fitted, runs: Runs, near: Fitted | None = None) -> Fitted:
+    """The model on other records: what is known may move there too (another day, another temperature), its causes are
+    held. Whether its form is right is another question than how well its values predict (`unseen`).
+
+    near: another model on the same records, whose sensitivities to what is known will do to begin with.
+    """
     h = fitted.hypothesis
     held = {n for cause in h.causes for n in cause.parameters}
     free = {n: bounds for n, bounds in h.free.items() if n not in held}
     start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
     known = {n: u for n, u in h.known.items() if n not in held}
-    return fit(replace(h, start=start, free=free, known=known), runs, fitted.params, REFIT_STEPS)
+    moved = replace(h, start=start, free=free, known=known)
+    slopes = {} if near is None else dict(zip(near.hypothesis.free, near.fit.jacobian.T, strict=True))
+    known_slopes = slopes if set(free) <= set(slopes) else None
+    if fitted.discrepancy is None:
+        steps = REFIT_STEPS if known_slopes is None else REFIT_NEAR
+        return fit(moved, runs, fitted.params, steps, known_slopes)
+    allowed = runs.discrepancy(fitted.params, residual_of(runs, fitted.params))
+    return fit(moved, runs, fitted.params, REFIT_STEPS, known_slopes, allowed)
 
 
 def sensitivities(fitted: Fitted, runs: Runs, names: list[str]) -> Array:
@@ -251,14 +323,14 @@ def sensitivities(fitted: Fitted, runs: Runs, names: list[str]) -> Array:
     return project_off(jacobian[:, len(nuisance) :], jacobian[:, : len(nuisance)])
 
 
-def nuisance_of(fitted: Fitted) -> Nuisance:
-    """The free parameters that are not held by a bound, at the solution."""
+def nuisance_of(fitted: Fitted, white: bool = False) -> Nuisance:
+    """The free parameters that are not held by a bound, at the solution; their sensitivities whitened if asked for."""
     h = fitted.hypothesis
     movable = fitted.movable
     place = [list(h.free).index(n) for n in movable]
     return Nuisance(
         movable,
-        fitted.fit.jacobian[:, place],
-        h.sample * pulls(movable, h.known),
+        fitted.whiten(fitted.fit.jacobian[:, place]) if white else fitted.fit.jacobian[:, place],
+        weights_of(h, movable),
         np.array([fitted.params[n] - h.start[n] for n in movable]),
     )

@@ -96,6 +96,21 @@ class NotTestable:
 
 
 @dataclass(frozen=True)
+class StillHidden:
+    """An effect that was not found, and the size from which these records would show it."""
+
+    effect: str
+    signal: str | None
+    title: str
+    parameter: str
+    size: float
+    """Shift of the parameter, in its unit."""
+    unit: str
+    plausible: float
+    """The largest plausible shift."""
+
+
+@dataclass(frozen=True)
 class Gain:
     """What the extension is worth on one record it has not seen. In the unit of the signal."""
 
@@ -111,6 +126,9 @@ class Gain:
     reduction_high: float
     role: str = "validate"
     """Of the record: "validate", on which causes were judged, or "test", which took no part in any choice."""
+    baseline_refitted_rms: float = math.nan
+    """As `baseline_rms` and `extended_rms`, but for what is declared uncertain and was fitted again to this record."""
+    extended_refitted_rms: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -354,6 +372,8 @@ class Diagnosis:
     causes: tuple[Cause, ...] = ()
     candidates: tuple[Candidate, ...] = ()
     not_testable: tuple[NotTestable, ...] = ()
+    still_hidden: tuple[StillHidden, ...] = ()
+    """With the verdict no-evidence, for rigs that are simulated: what these records would not show."""
     symptoms: tuple[Symptom, ...] = ()
     """What is wrong in each signal, for rigs that are simulated."""
     gain: tuple[Gain, ...] = ()

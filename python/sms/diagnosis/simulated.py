@@ -21,6 +21,7 @@ from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_recor
 from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
+from sms.diagnosis.design.still_hidden import still_hidden
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
 from sms.diagnosis.hypothesis import (
@@ -29,6 +30,7 @@ from sms.diagnosis.hypothesis import (
     Fitted,
     baseline_hypothesis,
     fit,
+    fit_with_discrepancy,
     from_reference,
     nuisance_of,
     unseen,
@@ -62,7 +64,7 @@ from sms.diagnosis.selection.stepwise import (
     stepwise_selection,
     tolerated,
 )
-from sms.diagnosis.thresholds import LITTLE
+from sms.diagnosis.thresholds import UNKNOWN_SHARE
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
@@ -72,6 +74,7 @@ from sms.report.wording_simulated import (
     remainder_in_words,
     sentence,
     sentence_of_inconsistency,
+    still_hidden_in_words,
     words_of_inconsistency,
 )
 from sms.rigs.kinds import KINDS
@@ -89,6 +92,8 @@ class Case:
     tolerated: Array
     """(channels,): mean square beyond the noise, in its units, that is not worth a word."""
     blind: Sequence[NotTestable]
+    able: Sequence[Effect]
+    """The effects that these records can show."""
     verdict: Verdict
     inconsistency: Inconsistency | None = None
     """With the verdict data-fault."""
@@ -148,19 +153,28 @@ def investigate(
         return small(left, least) or nothing_left(left, data)
 
     outcome = stepwise_selection(baseline, data, able, rng, progress, least)
-    before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     adequate = enough(outcome.final)
     found = law = None
     if outcome.found:
         was, left = (excess(Left.by(f, data).validate) for f in (baseline, outcome.final))
-        law = inconstancy_of(outcome, data, adequate or left < LITTLE * was)
+        progress("estimating sizes beside what no parameter explains", 0.8)
+        outcome = replace(outcome, final=_with_discrepancy(outcome.final, data))
+        law = inconstancy_of(outcome, data, adequate or left < UNKNOWN_SHARE * was)
         outcome = replace(outcome, named=law is None)
+    before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     if not adequate and not outcome.groups:
         # An error of the tables would take a part of what one record has of its own.
         plain = fit(hypothesis.with_exact_maps, data.identify)
         found = inconsistency(plain, data, able, before.floor)
     verdict = decide(outcome, adequate) if found is None else "data-fault"
-    return Case(data, baseline, outcome, before, after, least, blind, verdict, found, law)
+    return Case(
+        data, baseline, outcome, before, after, least, blind, able, verdict, found, law
+    )
+
+
+def _with_discrepancy(fitted: Fitted, data: Data) -> Fitted:
+    """The same model, its values and their errors by generalised least squares."""
+    return fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
 
 
 def complete(
@@ -191,6 +205,9 @@ def complete(
         causes=causes,
         candidates=candidates_of(case.outcome.rounds),
         not_testable=tuple(case.blind),
+        still_hidden=still_hidden(baseline, data, case.able)
+        if case.verdict == "no-evidence"
+        else (),
         symptoms=symptoms_of(baseline, data, case.before.floor),
         gain=gain,
         in_use=in_use(data.rig, baseline.params, final.params) if causes else (),
@@ -258,6 +275,8 @@ def _with_words(answer: Diagnosis, case: Case, hidden: Hidden) -> Diagnosis:
         case.after,
         nearest,
     )
+    if answer.still_hidden:
+        concluded = (*concluded, still_hidden_in_words(answer.still_hidden))
     left = answer.remainder
     if isinstance(left, Unexplained) and answer.causes:
         concluded = (*concluded, left.sentence)
@@ -271,7 +290,8 @@ def _cause(members: list[Trial], case: Case) -> Cause:
     data, final = case.data, case.outcome.final
 
     def found(m: Trial) -> tuple[ParameterValue, ...]:
-        return (found_value(final if m is members[0] else m.fitted, m.effect, data),)
+        at = final if m is members[0] else _with_discrepancy(m.fitted, data)
+        return (found_value(at, m.effect, data),)
 
     each = record_by_record(final, members[0].effect, data)
     return cause_from(members, found, {record: value for record, (value, _) in each.items()})

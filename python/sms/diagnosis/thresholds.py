@@ -58,7 +58,8 @@ TELLS_APART = 3.0
 MOST_CAUSES = 4
 """More are not named. Judgement: with so many terms something always fits."""
 UNKNOWN_SHARE = 0.2
-"""Of the systematic part of the baseline's error: with more left, the verdict is unknown. Judgement."""
+"""Of the systematic part of the baseline's error: with more left, the verdict is unknown on a cylinder, and on a
+simulated rig a cause is asked whether it follows another law. Judgement."""
 UNKNOWN_OF_NOISE = 0.05
 """Least systematic error, as a share of the noise floor's square, for the verdict unknown. Judgement."""
 UNKNOWN_CHANCE = 0.005
@@ -69,8 +70,12 @@ UNKNOWN_CHANCE = 0.005
 FINITE_STEPS = (0.01, 0.05, 0.2)
 """Of the way to either end of the plausible range: the sizes at which an effect is tried with all else held. Run time:
 a factor of five apart, and least squares goes on from the best."""
+STEPPED_ON = 3
+"""Windows with the largest error on which finite steps are tried, and as many of all. Run time."""
 TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3
 """Effects that are fitted in a round, by what finite steps and by what linear steps promise. Run time."""
+CANDIDATE_STEPS = 2
+"""Jacobians in the fit of a candidate; that of the one that is chosen goes on. Run time."""
 LEAST_SHARE = 0.5
 """Of what is left beyond the noise: what a cause must take. Judgement: most of it."""
 NEARLY_ALL = 0.85
@@ -80,8 +85,6 @@ TOLERATED = 0.1
 """Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description
 whose numbers are known to a few percent, and which then fits ten times better than that, is not called wrong.
 """
-LITTLE = 0.1
-"""Of the initial error: with less left on validation records a cause is not asked for another law. Judgement."""
 WELL, LEAST_OF_NOISE = 1.5, 0.1
 """Of the mean square that the model leaves on records of the healthy machine, and of the noise: what it may leave on
 others. Judgement: the machine is the same, the runs are not."""

@@ -1,7 +1,8 @@
 """Nuisance parameters: what is known within limits may move, and what that can undo of an effect.
 
-How strongly a parameter is pulled to what is declared is one over its uncertainty, so that what is declared counts as
-one more measurement.
+What is declared of them counts as so many more measurements: one a parameter, of its standard deviation, where they
+are known independently; as many of their combinations, where records of the healthy machine told how their errors go
+together (`Joint`).
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
 from sms import _core
 from sms.arrays import Array
@@ -17,48 +20,95 @@ from sms.estimation.problem import Problem
 
 
 @dataclass(frozen=True)
+class Joint:
+    """Errors of parameters that go together, as records tell them: combinations may be known far better than each."""
+
+    names: tuple[str, ...]
+    covariance: Array
+    """(names, names), SI."""
+
+
+@dataclass(frozen=True)
 class Nuisance:
-    """The free parameters: their Jacobian (rows, k), and how strongly each is pulled to what is declared."""
+    """The free parameters: their Jacobian (rows, k), and how strongly they are pulled to what is declared."""
 
     names: list[str]
     jacobian: Array
     pull: Array
-    """(k,) per unit; 0 where nothing is declared."""
+    """(r, k): rows W of the weighted departure W (value - declared); 0 where nothing is declared."""
     off: Array
     """(k,) value less declared value."""
 
-    def without(self, name: str) -> Nuisance:
-        keep = [i for i, n in enumerate(self.names) if n != name]
+    @property
+    def departure(self) -> Array:
+        """(r,): how far the values are from what is declared, in its standard deviations."""
+        return np.asarray(self.pull @ self.off)
+
+    def without(self, *names: str) -> Nuisance:
+        """The others; what is declared of them is what it is whatever the omitted ones are."""
+        keep = np.array([n not in names for n in self.names], dtype=np.bool_)
         return Nuisance(
-            [self.names[i] for i in keep], self.jacobian[:, keep], self.pull[keep], self.off[keep]
+            [n for n, k in zip(self.names, keep, strict=True) if k],
+            self.jacobian[:, keep],
+            _marginal(self.pull, keep),
+            self.off[keep],
         )
 
     def with_declared(self, rows: Array) -> Array:
         """Rows (n,) or (n, m) with zeros for what is declared below."""
-        below: Array = np.zeros((len(self.names), *rows.shape[1:]))
+        below: Array = np.zeros((len(self.pull), *rows.shape[1:]))
         out: Array = np.concatenate([rows, below])
         return out
 
     def basis(self) -> Array:
-        """(n + k, r): an orthonormal basis of what the free parameters can do."""
-        stacked = np.vstack([self.jacobian, np.diag(self.pull)])
+        """(n + r, rank): an orthonormal basis of what the free parameters can do."""
+        stacked = np.vstack([self.jacobian, self.pull])
         stacked = stacked / np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
         q, r = np.linalg.qr(stacked)
         return np.asarray(q[:, np.abs(np.diag(r)) > 1e-9])
 
 
-def pulls(names: Sequence[str], known: Mapping[str, float]) -> Array:
-    """(names,): how strongly each is pulled to what is declared; known: name -> declared uncertainty."""
-    return np.array([1.0 / known[n] if n in known else 0.0 for n in names])
+def pulls(names: Sequence[str], known: Mapping[str, float], joint: Joint | None = None) -> Array:
+    """(names, names): rows W so that |W (value - declared)|^2 is what a departure from what is declared costs.
+
+    known: name -> declared standard deviation; `joint` has the covariance of those whose errors go together.
+    """
+    pulled = [i for i, n in enumerate(names) if n in known]
+    covariance = np.diag([known[names[i]] ** 2 for i in pulled])
+    if joint is not None:
+        here = [k for k, i in enumerate(pulled) if names[i] in joint.names]
+        there = [joint.names.index(names[pulled[k]]) for k in here]
+        covariance[np.ix_(here, here)] = joint.covariance[np.ix_(there, there)]
+    out = np.zeros((len(names), len(names)))
+    out[np.ix_(pulled, pulled)] = _inverse_root(covariance)
+    return out
+
+
+def _inverse_root(covariance: Array) -> Array:
+    """Lower triangle W with W'W the inverse of a covariance."""
+    deviation = np.sqrt(np.diag(covariance))
+    correlation = covariance / np.outer(deviation, deviation)
+    root = np.linalg.cholesky(correlation)
+    return np.asarray(solve_triangular(root, np.diag(1.0 / deviation), lower=True))
+
+
+def _marginal(pull: Array, keep: NDArray[np.bool_]) -> Array:
+    """(r, kept): rows of the kept parameters where the others may be anything."""
+    others = pull[:, ~keep]
+    return np.asarray(pull[:, keep] - others @ (np.linalg.pinv(others) @ pull[:, keep]))
 
 
 def nuisance_at(
-    problem: Problem, params: _core.Params, names: Sequence[str], known: Mapping[str, float]
+    problem: Problem,
+    params: _core.Params,
+    names: Sequence[str],
+    known: Mapping[str, float],
+    joint: Joint | None = None,
 ) -> tuple[Array, Nuisance]:
     """The residual (rows,), and these parameters as they may move from where they are, which counts as declared."""
     residual, jacobian = problem.evaluate(params, names)
     nuisance = Nuisance(
-        list(names), np.asarray(jacobian), pulls(names, known), np.zeros(len(names))
+        list(names), np.asarray(jacobian), pulls(names, known, joint), np.zeros(len(names))
     )
     return np.asarray(residual), nuisance
 
@@ -66,16 +116,9 @@ def nuisance_at(
 def project(nuisance: Nuisance, columns: Array, names: Sequence[str]) -> Array:
     """(rows + known, m): what of columns (rows, m) the free parameters cannot do; its own is no rival."""
     basis = nuisance.basis()
-    out = np.zeros((len(columns) + len(nuisance.names), columns.shape[1]))
+    out = np.zeros((len(columns) + len(nuisance.pull), columns.shape[1]))
     for i, name in enumerate(names):
-        if name in nuisance.names:
-            others = nuisance.without(name)
-            q, full = others.basis(), others.with_declared(columns[:, i])
-            reduced = full - q @ (q.T @ full)
-            keep = [k for k, n in enumerate(nuisance.names) if n != name]
-            out[: len(columns), i] = reduced[: len(columns)]
-            out[len(columns) + np.array(keep, dtype=np.int64), i] = reduced[len(columns) :]
-        else:
-            full = nuisance.with_declared(columns[:, i])
-            out[:, i] = full - basis @ (basis.T @ full)
+        q = nuisance.without(name).basis() if name in nuisance.names else basis
+        full = nuisance.with_declared(columns[:, i])
+        out[:, i] = full - q @ (q.T @ full)
     return out

@@ -16,13 +16,18 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array, Index
 from sms.estimation.block_statistics import merge_windows
+from sms.estimation.discrepancy import Discrepancy, Whitened
 from sms.estimation.divergence import WithinNumbers
 from sms.estimation.kind import Kind
-from sms.estimation.least_squares import Free, Solution, fit_windows
+from sms.estimation.least_squares import MOST_STEPS, Free, Solution, fit_windows
 from sms.estimation.problem import WindowProblem
 from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import without_leg
+
+
+RUN_UP = 0.1
+"""s before the first window of a record, in which the spool follows the command (WindowOptions)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,12 +63,32 @@ class Runs:
         return WithinNumbers(self.simulation) if self.whitened else self.simulation
 
     def fit(
-        self, initial: _core.Params, free: list[Free], most_steps: int | None = None
+        self,
+        initial: _core.Params,
+        free: list[Free],
+        pull: Array,
+        most_steps: int = MOST_STEPS,
+        slopes: Array | None = None,
+        discrepancy: Discrepancy | None = None,
     ) -> Solution:
-        """Least squares over the free parameters, of a simulated rig in at most so many steps."""
-        if most_steps is None or not self.whitened:
+        """Least squares over the free parameters; of a simulated rig pulled by rows (r, free), in at most so many
+        steps, with a Jacobian (rows, free) to begin with, and generalised by the covariance of a discrepancy.
+        """
+        if not self.whitened:
             return self.kind.solve(self.problem, initial, free)
-        return fit_windows(self.problem, initial, free, most_steps)
+        if discrepancy is None:
+            return fit_windows(self.problem, initial, free, most_steps, pull, slopes)
+        root = discrepancy.whitener()
+        white = None if slopes is None else root.whiten(slopes)
+        problem = Whitened(self.problem, root)
+        found = fit_windows(problem, initial, free, most_steps, pull, white)
+        return replace(
+            found, residual=root.colour(found.residual), jacobian=root.colour(found.jacobian)
+        )
+
+    def discrepancy(self, params: _core.Params, residual: Array) -> Discrepancy:
+        """The random hidden inputs for which the residual (rows,) of these parameters is most likely."""
+        return Discrepancy.of(self.problem, params, len(self.kind.hidden), residual)
 
     @cached_property
     def whole(self) -> Runs:
@@ -71,6 +96,18 @@ class Runs:
         if self.kind.whole is None:
             return self
         return replace(self, motions=tuple(self.kind.whole(run) for run in self.motions))
+
+    def excerpt(self, chosen: Sequence[int]) -> Runs:
+        """Some of the windows, each a record of its own, with as much before it as a simulation runs up."""
+        runs = []
+        for k in chosen:
+            window = self.problem.windows[k]
+            run = self.motions[window.record]
+            lead = round(RUN_UP / run.step)
+            part = slice(max(window.first - lead, 0), window.first + window.samples)
+            signals = {n: v[part] for n, v in run.signals.items()}
+            runs.append(replace(run, time=run.time[part], signals=signals))
+        return replace(self, motions=tuple(runs))
 
     def part(self, number: int) -> Runs:
         """One of the records alone."""

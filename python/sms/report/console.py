@@ -13,6 +13,7 @@ from rich.text import Text
 from sms.diagnosis.result import Cause, Diagnosis, Gain, ParameterValue, Remainder, Unexplained
 from sms.report.verdict import VERDICT_WORDS, is_shift, parameter_text
 from sms.report.wording import INSENSITIVE, arranged
+from sms.report.wording_simulated import still_hidden_in_words
 from sms.units_display import (
     capital,
     format_aligned,
@@ -170,6 +171,8 @@ def _notes(diagnosis: Diagnosis) -> Padding | None:
     if diagnosis.remainder is not None:
         left = diagnosis.remainder
         table.add_row("Residual", left.sentence if isinstance(left, Unexplained) else _left(left))
+    if diagnosis.still_hidden:
+        table.add_row("Not excluded", still_hidden_in_words(diagnosis.still_hidden))
     if diagnosis.not_testable:
         tried = {c.effect for c in diagnosis.candidates}
         blind = [n.effect for n in diagnosis.not_testable if n.effect not in tried]

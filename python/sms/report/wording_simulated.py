@@ -16,6 +16,7 @@ from sms.diagnosis.result import (
     Finding,
     Gain,
     Hidden,
+    StillHidden,
     Unexplained,
     Verdict,
 )
@@ -80,6 +81,17 @@ def remainder_in_words(left: Unexplained, units: Mapping[str, str]) -> str:
         return f"{said}; that is within what the declared uncertainties make tolerable ({least})."
     along = spaced(left.along.split(" [")[0])
     return f"{said}. It sits in {block_in_words(left.equation)}, along {along}."
+
+
+def still_hidden_in_words(effects: Sequence[StillHidden]) -> str:
+    """What could still be there: the effects that these records show least well, by what is plausible of them."""
+    least = sorted(effects, key=lambda e: -min(e.size / max(e.plausible, 1e-300), 1.0))[:3]
+    listed = "; ".join(
+        f"{e.title}, below {format_quantity(e.size, e.unit, e.parameter)}" for e in least
+    )
+    return (
+        f"These records are least sensitive to: {listed}. The limits of all effects are in diagnosis.json (still_hidden)."
+    )
 
 
 def block_in_words(equation: str) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from sms.diagnosis.result import Diagnosis, Gain, InUse, Remainder
+from sms.diagnosis.result import Diagnosis, Gain, InUse, Remainder, Unexplained
 from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch, table
 from sms.report.wording import ARRANGED
 from sms.units_display import (
@@ -152,7 +153,34 @@ def _gain_rows(g: Gain, scale: Scale, extended: str) -> str:
         f'<tr><th scope="rowgroup" colspan="3"><strong>{esc(g.record)}</strong>, '
         f"{esc(words(g.signal))}{TESTED if g.role == 'test' else ''} {change}</th></tr>"
     )
-    return f"<tbody>{head}{lines}</tbody>"
+    return f"<tbody>{head}{lines}{_refitted(g) if extended else ''}</tbody>"
+
+
+def _refitted(g: Gain) -> str:
+    """The same errors where what is declared uncertain was fitted again, if that makes a difference."""
+    again = (g.baseline_refitted_rms, g.extended_refitted_rms)
+    if not all(map(math.isfinite, again)) or again == (g.baseline_rms, g.extended_rms):
+        return ""
+    before, after = format_aligned(again, g.unit)
+    return (
+        '<tr><td colspan="3" class="small">with the parameters of declared uncertainty refitted to this record: '
+        f"{esc(before)} \N{RIGHTWARDS ARROW} {esc(after)}</td></tr>"
+    )
+
+
+def _by_signal(left: Unexplained, diagnosis: Diagnosis) -> str:
+    """What is left in each signal, beside the noise and what declared uncertainties make tolerable."""
+    unit = {g.signal: g.unit for g in diagnosis.gain}
+    rows = [
+        (
+            esc(words(s)),
+            *map(esc, format_aligned([left.rms[s], left.floor[s], left.tolerated[s]], unit[s])),
+        )
+        for s in left.rms
+        if s in unit
+    ]
+    head = ("Signal", "Residual", "Noise floor", "Tolerated beyond it")
+    return table("RMS on the validation records", head, rows, "left-by-signal")
 
 
 def remainder(diagnosis: Diagnosis) -> str:
@@ -167,6 +195,8 @@ def remainder(diagnosis: Diagnosis) -> str:
         )
     )
     noise = f"<p>The measurement itself scatters by {esc(floors)} (RMS).</p>" if floors else ""
+    if isinstance(left, Unexplained):
+        return section("left", title, f"<p>{esc(left.sentence)}</p>{_by_signal(left, diagnosis)}")
     if not isinstance(left, Remainder):
         return section("left", title, empty("The residual was not examined.") + noise)
     sentence = (

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, refitted
+from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.estimation.windows import Runs
 
 
@@ -41,9 +41,9 @@ class LackOfFit:
 
 def lack_of_fit(fitted: Fitted, data: Data) -> LackOfFit:
     """What this model leaves."""
-    seen, unseen = fitted.fit.residual, refitted(fitted, data).fit.residual
-    floor = 0.5 * (data.identify.floor(seen) + data.validate.floor(unseen))
-    parts = _beyond(seen, data.identify, floor), _beyond(unseen, data.validate, floor)
+    seen, held = fitted.fit.residual, unseen(fitted, data)
+    floor = 0.5 * (data.identify.floor(seen) + data.validate.floor(held))
+    parts = _beyond(seen, data.identify, floor), _beyond(held, data.validate, floor)
     return LackOfFit(floor, *parts, data.identify.kind.honest)
 
 

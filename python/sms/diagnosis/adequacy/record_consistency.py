@@ -80,7 +80,7 @@ def _promises(runs: Runs, at: Fitted, effects: Sequence[Effect]) -> Array:
         own = Nuisance(nuisance.names, nuisance.jacobian[rows], nuisance.pull, nuisance.off)
         sensitivity = project(own, columns[rows], [e.parameters[0] for e in effects])
         size = np.maximum(np.sum(sensitivity**2, axis=0), 1e-300)
-        full = np.concatenate([at.fit.residual[rows], own.pull * own.off])
+        full = np.concatenate([at.fit.residual[rows], own.departure])
         taken += (sensitivity.T @ full) ** 2 / size
     return taken
 

@@ -31,9 +31,9 @@ class ByWindow:
     gram: Array
     """(windows, k + 2, k + 2): products of the columns of what is free, of the cause, and of the residual."""
     pull: Array
-    """(k,) squared, per unit of the columns."""
+    """(k, k): product of the rows that pull to what is declared with themselves, per unit of the columns."""
     pulled: Array
-    """(k,) the same times the distance from what is declared."""
+    """(k,): the same with how far the values are from it."""
     scale: float
     """Of the cause's column."""
     rows: Index
@@ -49,7 +49,7 @@ class ByWindow:
         """The parameter as these windows alone have it; None where they do not show it."""
         k = len(self.pull)
         gram = self.gram[chosen].sum(axis=0)
-        free = gram[:k, :k] + np.diag(self.pull)
+        free = gram[:k, :k] + self.pull
         undone = np.linalg.pinv(free, rcond=1e-12, hermitian=True) @ gram[:k, k]
         information = float(gram[k, k] - gram[:k, k] @ undone)
         if information <= 1e-12 * float(gram[k, k]):
@@ -99,8 +99,8 @@ def parts_of(fitted: Fitted, effect: Effect, data: Data) -> list[ByWindow]:
 
 def _by_window(runs: Runs, at: Fitted, effect: Effect) -> ByWindow:
     name = effect.parameters[0]
-    residual = at.fit.residual
-    column = column_of(runs, at, effect)
+    residual = at.whiten(at.fit.residual)
+    column = at.whiten(column_of(runs, at, effect))
     nuisance = _others_free(at, effect)
     columns = np.column_stack([nuisance.jacobian, column])
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
@@ -112,8 +112,8 @@ def _by_window(runs: Runs, at: Fitted, effect: Effect) -> ByWindow:
     return ByWindow(
         at.params[name],
         np.array([part.T @ part for part in parts]),
-        pull**2,
-        pull * nuisance.pull * nuisance.off,
+        pull.T @ pull,
+        pull.T @ nuisance.departure,
         float(scale[-1]),
         rows,
         [run.name for run in runs.motions],
@@ -126,14 +126,16 @@ def _by_window(runs: Runs, at: Fitted, effect: Effect) -> ByWindow:
 class Beside:
     """What all else that is free cannot undo of a cause, at one model."""
 
+    at: Fitted
     nuisance: Nuisance
+    """Whitened."""
     basis: Array
     residual: Array
-    """(rows + known,), less what the others can undo."""
+    """(rows + known,), whitened, less what the others can undo."""
 
     def gram(self, columns: Array) -> Array:
         """(m + 1, m + 1): products of sensitivities (rows, m) and of the residual, less what the others can undo."""
-        full = self.nuisance.with_declared(columns)
+        full = self.nuisance.with_declared(self.at.whiten(columns))
         left = np.column_stack([full - self.basis @ (self.basis.T @ full), self.residual])
         return np.asarray(left.T @ left)
 
@@ -141,8 +143,8 @@ class Beside:
 def beside(at: Fitted, effect: Effect) -> Beside:
     nuisance = _others_free(at, effect)
     basis = nuisance.basis()
-    full = np.concatenate([at.fit.residual, nuisance.pull * nuisance.off])
-    return Beside(nuisance, basis, full - basis @ (basis.T @ full))
+    full = np.concatenate([at.whiten(at.fit.residual), nuisance.departure])
+    return Beside(at, nuisance, basis, full - basis @ (basis.T @ full))
 
 
 def linear(gram: Array, rows: int) -> tuple[Array, Array] | None:
@@ -156,7 +158,7 @@ def linear(gram: Array, rows: int) -> tuple[Array, Array] | None:
 
 
 def _others_free(at: Fitted, effect: Effect) -> Nuisance:
-    nuisance, name = nuisance_of(at), effect.parameters[0]
+    nuisance, name = nuisance_of(at, white=True), effect.parameters[0]
     return nuisance.without(name) if name in nuisance.names else nuisance
 
 

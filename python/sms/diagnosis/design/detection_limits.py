@@ -175,7 +175,7 @@ def limits_of(
     runs = Runs(rig, tuple(records), noise, kind)
     baseline = baseline_hypothesis(Data(rig, runs, runs), effects)
     residual, nuisance = nuisance_at(
-        runs.problem, baseline.start, list(baseline.free), baseline.known
+        runs.problem, baseline.start, list(baseline.free), baseline.known, baseline.joint
     )
     raw = sensitivity_columns(runs.problem, baseline.start, residual, effects, rig.table)
     usable = np.all(np.isfinite(raw), axis=0)

@@ -111,7 +111,7 @@ def min_separation(rivals: Sequence[Effect], final: Fitted, runs: Runs) -> float
     """Smallest, over pairs, of what one rival does that another cannot imitate, in standard errors."""
     h = final.hypothesis
     names = [n for n in final.movable if n not in {p for e in rivals for p in e.parameters}]
-    residual, nuisance = nuisance_at(runs.problem, final.params, names, h.known)
+    residual, nuisance = nuisance_at(runs.problem, final.params, names, h.known, h.joint)
     columns = sensitivity_columns(runs.problem, final.params, residual, rivals, h.table)
     sensitivity = project(nuisance, columns, [e.parameters[0] for e in rivals])
     sizes = _sizes(rivals, final, sensitivity)

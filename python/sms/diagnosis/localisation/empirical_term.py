@@ -26,7 +26,7 @@ def empirical_of(
             there = refitted_on(baseline, runs)
             before = there.fit.residual
             after = before + with_curve(runs, nuisance_of(there), there.params, shape)
-            gains += gains_on(runs, before, after, floor, rng)
+            gains += gains_on(runs, (before, after), (before, after), floor, rng)
     return Empirical(shape, tuple(gains))
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, refitted
+from sms.diagnosis.hypothesis import Data, Fitted, unseen
 from sms.diagnosis.result import Symptom
 from sms.diagnosis.thresholds import POWER_SHARE
 from sms.estimation.problem import Window
@@ -19,7 +19,7 @@ from sms.estimation.windows import Runs
 def symptoms_of(baseline: Fitted, data: Data, floor: Array) -> tuple[Symptom, ...]:
     """One a signal, in the order of the problem; floor (channels,) of the noise, in units of the declared one."""
     runs = data.validate
-    residual = refitted(baseline, data).fit.residual
+    residual = unseen(baseline, data)
     return tuple(
         _symptom(runs, residual, c, float(np.sqrt(floor[c]))) for c in range(len(runs.channels))
     )

@@ -252,8 +252,8 @@ def estimate_unknown_inputs(
 ) -> Hidden:
     """Shares of the equations and the shape of the missing term; excess is the chi-square that is not noise."""
     bases = bases_of(runs, nuisance, params)
-    full = thinned(runs, np.concatenate([residual, nuisance.pull * nuisance.off])[:, None])[:, 0]
-    blocks = _blocks(runs, len(nuisance.names))
+    full = thinned(runs, np.concatenate([residual, nuisance.departure])[:, None])[:, 0]
+    blocks = _blocks(runs, len(nuisance.pull))
     taken = {(b.equation, b.signal): _taken(b.sensitivity, full) for b in bases}
     shares = {}
     for equation in dict.fromkeys(b.equation for b in bases):
@@ -265,7 +265,7 @@ def estimate_unknown_inputs(
             min(low / max(excess, 1e-12), 1.0),
             min(high / max(excess, 1e-12), 1.0),
         )
-    parts = _parts(runs, len(nuisance.names))
+    parts = _parts(runs, len(nuisance.pull))
     carried = [confirmed(b.sensitivity, full, parts) for b in bases]
     order = [(c.taken, taken[(b.equation, b.signal)]) for b, c in zip(bases, carried, strict=True)]
     first = max(range(len(bases)), key=lambda k: order[k])

@@ -81,13 +81,13 @@ def score_effects(
     current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
 ) -> ScoreTests:
     """The tests of all effects on top of the current model, each by one linear step."""
-    nuisance = nuisance_of(current)
-    columns = raw_columns(current, data.identify, effects)
+    nuisance = nuisance_of(current, white=True)
+    columns = current.whiten(raw_columns(current, data.identify, effects))
     sensitivity = project(nuisance, columns, [e.parameters[0] for e in effects])
     room = np.array([room_of(e, current, data.rig) for e in effects])
     allowed = np.column_stack([room[:, 0] < 0.0, room[:, 1] > 0.0])
     return score_tests(
-        sensitivity, nuisance, current.fit.residual, data.identify.block, allowed, rng
+        sensitivity, nuisance, current.whiten(current.fit.residual), data.identify.block, allowed, rng
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from sms.arrays import Array, Index
 from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, unseen
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
+from sms.estimation.nuisance import Nuisance
 from sms.estimation.windows import Runs
 
 
@@ -58,22 +59,25 @@ def _parts(change: Array, runs: Runs, least: float) -> Index:
 def predicted(fitted: Fitted, parts: Index) -> Array:
     """(rows,) residuals: each part by the causes' sizes that the others ask for, what is known free in it."""
     free, residual = nuisance_of(fitted), fitted.fit.residual
+    white = nuisance_of(fitted, white=True), fitted.whiten(residual)
     held = {n for cause in fitted.hypothesis.causes for n in cause.parameters}
     cause = np.array([n in held for n in free.names], dtype=np.bool_)
+    others, white_others = free.without(*held), white[0].without(*held)
     out = np.empty(len(residual))
     for part in np.unique(parts):
         rows = parts == part
-        step = _step(free.jacobian[~rows], residual[~rows], free.pull, free.off)
+        step = _step(white[0].jacobian[~rows], white[1][~rows], free)
         moved = residual[rows] + free.jacobian[rows][:, cause] @ step[cause]
-        known = free.jacobian[rows][:, ~cause]
-        out[rows] = moved + known @ _step(known, moved, free.pull[~cause], free.off[~cause])
+        asked = white[1][rows] + white[0].jacobian[rows][:, cause] @ step[cause]
+        known = _step(white_others.jacobian[rows], asked, others)
+        out[rows] = moved + others.jacobian[rows] @ known
     return out
 
 
-def _step(jacobian: Array, residual: Array, pull: Array, off: Array) -> Array:
+def _step(jacobian: Array, residual: Array, free: Nuisance) -> Array:
     """(k,): the step that minimises |residual + jacobian step|^2 + |pull (off + step)|^2."""
-    stacked = np.vstack([jacobian, np.diag(pull)])
+    stacked = np.vstack([jacobian, free.pull])
     scale = np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
-    target = -np.concatenate([residual, pull * off])
+    target = -np.concatenate([residual, free.departure])
     found = np.linalg.lstsq(stacked / scale, target, rcond=1e-10)[0]
     return np.asarray(found / scale)

@@ -60,8 +60,8 @@ def score_tests(
     draws: int = 999,
 ) -> ScoreTests:
     """Test sensitivities (rows + known, m). allowed (m, 2): whether the estimate may be negative, and positive."""
-    full = np.concatenate([residual, nuisance.pull * nuisance.off])
-    blocks = np.concatenate([block, np.full(len(nuisance.names), int(block.max()) + 1)])
+    full = np.concatenate([residual, nuisance.departure])
+    blocks = np.concatenate([block, np.full(len(nuisance.pull), int(block.max()) + 1)])
     groups = int(blocks.max()) + 1
     size = np.sum(sensitivity**2, axis=0)
     size[size == 0.0] = np.inf

@@ -25,17 +25,28 @@ from scipy.stats import wilcoxon
 from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, unseen
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    Hypothesis,
+    fit,
+    refitted,
+    residual_of,
+)
 from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
+from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.thresholds import (
+    ALIKE,
+    CANDIDATE_STEPS,
     FINITE_STEPS,
     LEAST_OF_NOISE,
     LEAST_SHARE,
     MOST_CAUSES,
     NEARLY_ALL,
     SIGNIFICANT,
+    STEPPED_ON,
     TELLS_APART,
     TOLERATED,
     TRIED_BY_SLOPE,
@@ -68,7 +79,11 @@ def energies(runs: Runs, residual: Array) -> Array:
 
 @dataclass(frozen=True)
 class Left:
-    """What a model leaves, window by window: (windows, channels) on records of either role."""
+    """What a model leaves, window by window: (windows, channels) on records of either role.
+
+    On validation records its causes are held, and what is known may move within what is declared: whether the model is
+    of the right form is one question, how well its fitted values predict another (hypothesis.unseen).
+    """
 
     identify: Array
     validate: Array
@@ -77,7 +92,7 @@ class Left:
     def by(cls, fitted: Fitted, data: Data) -> Left:
         return cls(
             energies(data.identify, fitted.fit.residual),
-            energies(data.validate, unseen(fitted, data)),
+            energies(data.validate, refitted(fitted, data).fit.residual),
         )
 
     @property
@@ -137,27 +152,33 @@ def try_effects(
     scores = score_effects(current, data, effects, rng)
     room = np.array([room_of(e, current, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
-    here = float(np.sum(np.log1p(energies(data.identify, current.fit.residual))))
-    steps = [_best_step(e, current, data, here) for e in effects]
-    by_step = sorted(range(len(effects)), key=lambda k: -steps[k][0])[: 2 * TRIED_BY_STEP]
-    for k in by_step:
-        if steps[k][0] > 0.0:
-            steps[k] = _alone(effects[k], current, data, here, steps[k])
-    by_step = sorted(by_step, key=lambda k: -steps[k][0])[:TRIED_BY_STEP]
+    excerpt = data.identify.excerpt(_telling(data.identify, current.fit.residual))
+    here = _logarithms(excerpt, residual_of(excerpt, current.params))
+    steps = [_best_step(e, current, data, excerpt, here) for e in effects]
+    by_step = _chosen_by_step(steps)
     by_slope = [int(k) for k in np.argsort(-promise)[:TRIED_BY_SLOPE] if promise[k] > 0.0]
-    chosen = list(dict.fromkeys([k for k in by_step if steps[k][0] > 0.0] + by_slope))
-    before = unseen(current, data) ** 2
+    chosen = list(dict.fromkeys(by_step + by_slope))
+    chosen += [
+        k
+        for k in range(len(effects))
+        if k not in chosen and np.any(scores.cosine[k, chosen] > ALIKE)
+    ]
+    first = {
+        k: _fitted(effects[k], current, data, steps[k].params, float(scores.estimate[k]), room[k])
+        for k in chosen
+    }
+    before = refitted(current, data).fit.residual ** 2
     trials = []
     for k, effect in enumerate(effects):
         by_score = float(scores.p_value[k])
         trial = Trial(effect, current, by_score, before, identified=current.fit.residual**2)
-        if k in chosen:
-            fitted = _fitted(effect, current, data, steps[k][1], float(scores.estimate[k]), room[k])
+        if k in first:
+            fitted = first[k]
             trial = Trial(
                 effect,
                 fitted,
                 by_score,
-                unseen(fitted, data) ** 2,
+                refitted(fitted, data).fit.residual ** 2,
                 identified=fitted.fit.residual**2,
             )
         else:
@@ -166,60 +187,106 @@ def try_effects(
     return trials
 
 
-def _best_step(effect: Effect, current: Fitted, data: Data, here: float) -> tuple[float, float]:
-    """By how much the best of a ladder of sizes lowers the logarithms on the identify records, and that size."""
+def _telling(runs: Runs, residual: Array) -> list[int]:
+    """Windows on which finite steps are tried: the worst ones, and as many evenly over all."""
+    left = np.log1p(energies(runs, residual)).sum(axis=1)
+    worst = np.argsort(-left)[:STEPPED_ON]
+    evenly = np.linspace(0, len(left) - 1, min(STEPPED_ON, len(left))).round().astype(int)
+    return sorted({int(k) for k in (*worst, *evenly)})
+
+
+def _logarithms(runs: Runs, residual: Array) -> float:
+    return float(np.sum(np.log1p(energies(runs, residual))))
+
+
+def extended(hypothesis: Hypothesis, effect: Effect, data: Data) -> Hypothesis:
+    """With the effect, its size within what is plausible."""
+    reference = data.rig.declared(common_parameter(effect.parameters[0])).value
+    return hypothesis.with_effect(effect, effect.plausible_range(reference))
+
+
+@dataclass(frozen=True)
+class Step:
+    """An effect at the best of the sizes at which it was tried on an excerpt, all else held."""
+
+    gain: float
+    """By how much it lowers the logarithms of what is left."""
+    params: _core.Params
+    change: Array
+    """(rows,) of the excerpt's residual."""
+
+
+def _best_step(effect: Effect, current: Fitted, data: Data, excerpt: Runs, here: float) -> Step:
+    """The best of a ladder of sizes, and from there least squares over the effect's own parameters."""
     name = effect.parameters[0]
     now = current.params[name]
-    best = (0.0, now)
-    for end in room_of(effect, current, data.rig):
-        for part in FINITE_STEPS:
-            if end == 0.0:
-                continue
-            value = now + part * end
-            residual = residual_of(
-                data.identify, changed(current.params, [name], np.array([value]))
-            )
+    before = residual_of(excerpt, current.params)
+    best = Step(0.0, current.params, np.zeros(len(before)))
+    low, high = room_of(effect, current, data.rig)
+    ladders = [[now + part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
+    if low > 0.0 or high < 0.0:  # what is plausible begins away from here
+        ladders = [[now + low], [now + high]]
+    for ladder in ladders:
+        for value in ladder:
+            params = changed(current.params, [name], np.array([value]))
+            residual = residual_of(excerpt, params)
             if not np.all(np.isfinite(residual)):
                 continue
-            gain = here - float(np.sum(np.log1p(energies(data.identify, residual))))
-            best = max(best, (gain, value))
-            if gain < -len(
-                data.identify.problem.windows
-            ):  # worse by far: larger ones are no better
+            gain = here - _logarithms(excerpt, residual)
+            if gain > best.gain:
+                best = Step(gain, params, residual - before)
+            if gain < -len(excerpt.problem.windows):  # worse by far: larger ones are no better
                 break
-    return best
-
-
-def _alone(
-    effect: Effect, current: Fitted, data: Data, here: float, step: tuple[float, float]
-) -> tuple[float, float]:
-    """The same after least squares over the effect's own parameters, all else held."""
-    bounds = current.hypothesis.with_effect(effect).free
+    if best.gain <= 0.0:
+        return best
+    bounds = extended(current.hypothesis, effect, data).free
     free = [Free(n, *bounds[n], 0.0, current.params[n]) for n in effect.parameters]
-    start = changed(current.params, [effect.parameters[0]], np.array([step[1]]))
-    found = fit_windows(data.identify.problem, start, free)
-    gain = here - float(np.sum(np.log1p(energies(data.identify, found.residual))))
-    return max(step, (gain, found.params[effect.parameters[0]]))
+    found = fit_windows(excerpt.problem, best.params, free)
+    gain = here - _logarithms(excerpt, found.residual)
+    return best if gain < best.gain else Step(gain, found.params, found.residual - before)
+
+
+def _chosen_by_step(steps: Sequence[Step]) -> list[int]:
+    """Those that help most, and those that do nearly the same as the first of them."""
+    order = sorted(range(len(steps)), key=lambda k: -steps[k].gain)
+    first = steps[order[0]].change
+    unit = first / max(float(np.linalg.norm(first)), 1e-300)
+    alike = [
+        k
+        for k in order
+        if float(unit @ steps[k].change) > TWINS * float(np.linalg.norm(steps[k].change))
+    ]
+    helping = [k for k in order if steps[k].gain > 0.0]
+    return list(dict.fromkeys(helping[:TRIED_BY_STEP] + [k for k in alike if k in helping]))
 
 
 def _fitted(
-    effect: Effect, current: Fitted, data: Data, by_step: float, slope: float, room: Array
+    effect: Effect,
+    current: Fitted,
+    data: Data,
+    by_step: _core.Params,
+    slope: float,
+    room: Array,
 ) -> Fitted:
     """The effect fitted beside all else that is free, from the better of its step and its linear estimate."""
     name = effect.parameters[0]
     now = current.params[name]
     linear = now + float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
-    starts = {by_step, linear if effect.step is None else max(linear, 0.1 * effect.step)}
+    linear = linear if effect.step is None else max(linear, 0.1 * effect.step)
     best: tuple[float, _core.Params] | None = None
-    for value in starts:
-        start = changed(current.params, [name], np.array([value]))
+    for start in (by_step, changed(current.params, [name], np.array([linear]))):
         residual = residual_of(data.identify, start)
         if np.all(np.isfinite(residual)):
-            left = float(np.sum(np.log1p(energies(data.identify, residual))))
+            left = _logarithms(data.identify, residual)
             if best is None or left < best[0]:
                 best = (left, start)
     start = current.params if best is None else best[1]
-    return fit(current.hypothesis.with_effect(effect), data.identify, start)
+    hypothesis = extended(current.hypothesis, effect, data)
+    slopes = dict(zip(current.hypothesis.free, current.fit.jacobian.T, strict=True))
+    if set(hypothesis.free) - set(slopes) == {name}:
+        slopes[name] = raw_columns(current, data.identify, [effect])[:, 0]
+    known = slopes if set(hypothesis.free) <= set(slopes) else None
+    return fit(hypothesis, data.identify, start, CANDIDATE_STEPS, known)
 
 
 def judge(
@@ -279,11 +346,9 @@ def _objection(trial: Trial, data: Data, needed: float) -> str:
     speak.
     """
     effect, name = trial.effect, trial.effect.parameters[0]
-    value = trial.fitted.params[name]
-    low, high = effect.plausible_range(data.rig.declared(common_parameter(name)).value)
-    if not low <= value <= high:
-        said = format_quantity(value, data.rig.table[name].unit, name)
-        return f"fits only with {said}, which is not plausible"
+    if name not in trial.fitted.movable:
+        said = format_quantity(trial.fitted.params[name], data.rig.table[name].unit, name)
+        return f"fits best at or beyond {said}, the end of what is plausible"
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
     taken = (
@@ -328,7 +393,7 @@ def _change(trial: Trial, current: Fitted, data: Data) -> Array:
     return np.concatenate(
         [
             trial.fitted.fit.residual - current.fit.residual,
-            unseen(trial.fitted, data) - unseen(current, data),
+            refitted(trial.fitted, data).fit.residual - refitted(current, data).fit.residual,
         ]
     )
 
@@ -371,12 +436,18 @@ def stepwise_selection(
         rounds.append(Round(trials, members))
         if not members:
             break
-        current = members[0].fitted
+        members[0].fitted = current = _converged(members[0].fitted, data)
         remaining = [e for e in remaining if e is not members[0].effect]
     found = [r.members for r in rounds if r.members]
     while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
         found, current = fewer
     return Outcome(current, rounds, found)
+
+
+def _converged(fitted: Fitted, data: Data) -> Fitted:
+    """A candidate's fit, carried on to its end."""
+    slopes = dict(zip(fitted.hypothesis.free, fitted.fit.jacobian.T, strict=True))
+    return fit(fitted.hypothesis, data.identify, fitted.params, slopes=slopes)
 
 
 def _without_one(
@@ -392,7 +463,7 @@ def _without_one(
         kept = [m for m in found if m is not members]
         hypothesis, start = baseline.hypothesis, baseline.params.copy()
         for others in kept:
-            hypothesis = hypothesis.with_effect(others[0].effect)
+            hypothesis = extended(hypothesis, others[0].effect, data)
         for name in hypothesis.free:
             start[name] = final.params[name]
         without = fit(hypothesis, data.identify, start)

@@ -1,0 +1,145 @@
+"""What every model of a machine leaves beside noise, as a part of the statistics: a random hidden input of each equation.
+
+Kennedy and O'Hagan (2001) put one random function between a simulator's output and the data. Here it sits where a
+model is wrong, in its equations: each has an unknown input that is drawn anew at knots 50 ms apart, linear in between,
+of a standard deviation tau. Carried through the simulation to first order (H, libsms/estimation/shooting.hpp), the
+residual of a window has the covariance
+
+  V = I + H diag(tau^2) H'
+
+in units of the noise. Least squares with V (generalised least squares) asks of a parameter what a wandering input cannot
+do as well: a standard error grows where the discrepancy can imitate it, and no parameter is driven to its bound by a
+friction or a flow that is a little off. The tau come from the data, by maximum marginal likelihood (fixed point of
+MacKay, 1992); of an equation that is right they go to nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from sms import _core
+from sms.arrays import Array
+from sms.estimation.problem import Problem, Window
+
+KNOTS = 21
+"""Knots per window of 1 s, 50 ms apart. Run time: the noise hides anything faster."""
+ITERATIONS = 12
+"""Of the fixed point of tau. Run time: it settles within some percent."""
+LEAST = 1e-3
+"""Standard deviations of the noise: an input that moves readings by less is nothing. Numerics."""
+
+
+class Shot(Protocol):
+    """A problem of windows whose equations have inputs."""
+
+    @property
+    def windows(self) -> Sequence[Window]: ...
+
+    def hidden(self, params: _core.Params, knots: int) -> Array: ...
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """The hidden inputs of a problem's windows, and how large they are."""
+
+    rows: tuple[slice, ...]
+    """Of each window."""
+    inputs: Array
+    """(rows, equations * knots): change of the residual with each input at each knot of its window."""
+    products: Array
+    """(windows, equations * knots, equations * knots): of the inputs with each other."""
+    tau: Array
+    """(equations,): standard deviation of each equation's input."""
+
+    @classmethod
+    def of(
+        cls, problem: Shot, params: _core.Params, equations: int, residual: Array
+    ) -> Discrepancy:
+        """As likely as can be for the residual (rows,) of a model with these parameters."""
+        rows = tuple(slice(w.row, w.row + w.rows) for w in problem.windows)
+        inputs = np.asarray(problem.hidden(params, KNOTS))
+        products = np.array([inputs[r].T @ inputs[r] for r in rows])
+        size = np.sqrt(np.sum(inputs**2, axis=0).reshape(equations, -1).mean(axis=1))
+        level = float(np.linalg.norm(residual)) / np.sqrt(len(rows) * KNOTS)
+        first = cls(rows, inputs, products, level / np.maximum(size, 1e-300))
+        return first.fitted_to(residual)
+
+    def fitted_to(self, residual: Array) -> Discrepancy:
+        """With the standard deviations under which the residual (rows,) is most likely."""
+        equations = len(self.tau)
+        size = np.sqrt(np.einsum("wii->i", self.products).reshape(equations, -1).mean(axis=1))
+        least = LEAST / np.maximum(size / np.sqrt(len(self.rows)), 1e-300)
+        score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])[:, :, None]
+        tau = np.maximum(self.tau, 30.0 * least)
+        for _ in range(ITERATIONS):
+            d = self._of_columns(tau)
+            inner = np.eye(len(d)) + d[:, None] * self.products * d
+            covariance = np.linalg.inv(inner)  # of the inputs, in units of tau
+            mean = (covariance @ (d[:, None] * score))[:, :, 0]
+            spread = np.einsum("wii->wi", covariance)
+            squares = (mean**2).sum(axis=0).reshape(equations, -1).sum(axis=1)
+            told = (1.0 - spread).sum(axis=0).reshape(equations, -1).sum(axis=1)
+            tau = np.maximum(tau * np.sqrt(squares / np.maximum(told, 1e-12)), least)
+        return replace(self, tau=tau)
+
+    def whitener(self) -> Whitener:
+        """Multiplies by the inverse root of the covariance."""
+        d = self._of_columns(self.tau)
+        value, vector = np.linalg.eigh(d[:, None] * self.products * d)
+        value = np.maximum(value, 1e-12)
+        bases = [
+            self.inputs[r] @ (d[:, None] * v / np.sqrt(s))
+            for r, s, v in zip(self.rows, value, vector, strict=True)
+        ]
+        return Whitener(self.rows, bases, np.sqrt(1.0 + value))
+
+    def _of_columns(self, tau: Array) -> Array:
+        """(equations * knots,)"""
+        return np.repeat(tau, self.inputs.shape[1] // max(len(tau), 1))
+
+
+@dataclass(frozen=True)
+class Whitener:
+    """The root of a covariance of windows, V = I + B diag(root^2 - 1) B' with orthonormal B."""
+
+    rows: tuple[slice, ...]
+    bases: Sequence[Array]
+    root: Array
+    """(windows, columns)"""
+
+    def whiten(self, values: Array) -> Array:
+        """(rows,) or (rows, m): times V^(-1/2)."""
+        return self._times(1.0 / self.root - 1.0, values)
+
+    def colour(self, values: Array) -> Array:
+        """(rows,) or (rows, m): times V^(1/2)."""
+        return self._times(self.root - 1.0, values)
+
+    def _times(self, factor: Array, values: Array) -> Array:
+        out = np.array(values, dtype=np.float64)
+        for r, basis, f in zip(self.rows, self.bases, factor, strict=True):
+            part = basis.T @ out[r]
+            out[r] += basis @ (f * part.T).T
+        return out
+
+
+@dataclass(frozen=True)
+class Whitened:
+    """A problem whose residuals are as independent as noise."""
+
+    problem: Problem
+    whitener: Whitener
+
+    @property
+    def rows(self) -> int:
+        return self.problem.rows
+
+    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
+        """As Problem has them, both times the inverse root of the covariance."""
+        residual, jacobian = self.problem.evaluate(params, free)
+        white = self.whitener.whiten
+        return white(residual), white(jacobian) if len(free) else jacobian

@@ -1,0 +1,142 @@
+"""A random hidden input as a part of the statistics: its covariance, its size, and what it does to a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from sms import _core
+from sms.arrays import Array
+from sms.estimation.discrepancy import KNOTS, Discrepancy, Whitened
+from sms.estimation.least_squares import Free, fit_windows
+from sms.estimation.nuisance import Joint, Nuisance, pulls
+
+from validation.random_cases import draw
+
+WINDOWS, SAMPLES, EQUATIONS = 12, 60, 2
+
+
+@dataclass
+class Drawn:
+    """Windows whose equations have inputs with random responses."""
+
+    inputs: Array
+    windows: list[Any]
+
+    def hidden(self, params: _core.Params, knots: int) -> Array:
+        assert knots == KNOTS
+        return self.inputs
+
+
+def drawn(random: np.random.Generator) -> Drawn:
+    rows = WINDOWS * SAMPLES
+    windows = [SimpleNamespace(row=k * SAMPLES, rows=SAMPLES) for k in range(WINDOWS)]
+    smooth = np.cumsum(random.normal(size=(rows, EQUATIONS * KNOTS)), axis=0)
+    return Drawn(smooth / np.sqrt(SAMPLES), windows)
+
+
+def residual_of(problem: Drawn, tau: Sequence[float], random: np.random.Generator) -> Array:
+    """Noise and what inputs of these sizes leave."""
+    out = random.normal(size=len(problem.inputs))
+    for w in problem.windows:
+        knots = np.repeat(tau, KNOTS) * random.normal(size=EQUATIONS * KNOTS)
+        out[w.row : w.row + w.rows] += problem.inputs[w.row : w.row + w.rows] @ knots
+    return out
+
+
+def test_whitening_undoes_the_covariance_and_colouring_undoes_whitening() -> None:
+    random = draw("whitening")
+    problem = drawn(random)
+    residual = residual_of(problem, (1.0, 0.3), random)
+    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
+    root = found.whitener()
+    values = random.normal(size=(len(residual), 3))
+    assert root.colour(root.whiten(values)) == pytest.approx(values, abs=1e-9)
+    first = found.rows[0]
+    tau = np.repeat(found.tau, KNOTS)
+    covariance = (
+        np.eye(SAMPLES) + problem.inputs[first] * tau**2 @ problem.inputs[first].T
+    )
+    padded = np.zeros((len(residual), SAMPLES))
+    padded[first] = covariance
+    half = root.whiten(padded)[first]
+    padded[first] = half.T
+    assert root.whiten(padded)[first] == pytest.approx(np.eye(SAMPLES), abs=1e-8)
+
+
+def test_the_sizes_of_the_inputs_are_found_and_that_of_one_that_is_not_there_goes_to_nothing() -> (
+    None
+):
+    random = draw("sizes of hidden inputs")
+    problem = drawn(random)
+    true = 10.0 ** random.uniform(0.0, 1.0)
+    residual = residual_of(problem, (true, 0.0), random)
+    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
+    assert found.tau[0] == pytest.approx(true, rel=0.4)  # 252 draws, five standard errors
+    assert found.tau[1] < 0.1 * true + 0.2  # and falling with every iteration
+    white = found.whitener().whiten(residual)
+    assert np.mean(white**2) == pytest.approx(1.0, abs=0.3)
+
+
+@dataclass
+class Line:
+    """A problem that is linear in one parameter."""
+
+    column: Array
+    target: Array
+
+    @property
+    def rows(self) -> int:
+        return len(self.target)
+
+    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
+        residual = self.column * params["coulomb_force"] - self.target
+        return residual, np.repeat(self.column[:, None], len(free), axis=1)
+
+
+def test_the_standard_error_is_that_of_the_estimates_where_noise_alone_would_claim_too_much() -> (
+    None
+):
+    random = draw("standard errors beside a discrepancy")
+    problem = drawn(random)
+    column = np.cumsum(random.normal(size=len(problem.inputs)))
+    column /= np.sqrt(SAMPLES)
+    free = [Free("coulomb_force", -1e6, 1e6, 0.0, 38.0)]
+    missed, claimed = [], []
+    for _ in range(60):
+        left = residual_of(problem, (1.0, 0.5), random)
+        line = Line(column, 38.0 * column - left)
+        found = Discrepancy.of(problem, _core.Params(), EQUATIONS, left)
+        root = found.whitener()
+        fit = fit_windows(
+            Whitened(line, root),  # type: ignore[arg-type]
+            _core.Params(coulomb_force=38.0),
+            free,
+        )
+        missed.append(fit.params["coulomb_force"] - 38.0)
+        claimed.append(1.0 / float(np.linalg.norm(root.whiten(column))))
+    by_noise = 1.0 / float(np.linalg.norm(column))
+    scatter = float(np.sqrt(np.mean(np.square(missed))))
+    assert scatter == pytest.approx(np.mean(claimed), rel=0.6)  # 60 draws, six standard errors
+    assert scatter > 2.0 * by_noise
+
+
+def test_an_omitted_parameter_leaves_the_marginal_of_what_is_known_of_the_others() -> None:
+    random = draw("marginal of a joint covariance")
+    root = random.normal(size=(4, 4))
+    joint = Joint(("a", "b", "c", "d"), root @ root.T + 0.1 * np.eye(4))
+    known = {n: float(s) for n, s in zip(joint.names, np.sqrt(np.diag(joint.covariance)), strict=True)}
+    names = ["a", "x", "b", "c", "d"]
+    full = Nuisance(names, np.zeros((3, 5)), pulls(names, known, joint), random.normal(size=5))
+    pull = full.without("b").pull
+    keep = [0, 2, 3]
+    expected = np.linalg.inv(joint.covariance[np.ix_(keep, keep)])
+    precision = pull.T @ pull
+    assert precision[np.ix_([0, 2, 3], [0, 2, 3])] == pytest.approx(expected, rel=1e-6)
+    assert precision[1] == pytest.approx(np.zeros(4))  # nothing is known of x
+    alone = pulls(["a", "x"], known)
+    assert np.diag(alone) == pytest.approx([1.0 / known["a"], 0.0])
