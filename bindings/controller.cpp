@@ -30,7 +30,7 @@ Array over_record(const Array& record, const char* name, const Step& step) {
 Array pid(const Params& p, const Array& error, double limit, bool anti_windup) {
   sms::PidSettings<double> settings = sms::pid_settings(p);
   settings.limit = limit;
-  settings.anti_windup = anti_windup;
+  settings.anti_windup = anti_windup ? sms::AntiWindup::conditional_integration : sms::AntiWindup::none;
   sms::Pid<double> state{};
   return over_record(error, "error",
                      [&settings, &state](py::ssize_t, double e) { return sms::pid_step(settings, state, e); });

@@ -35,7 +35,7 @@ sms::ActuatorLaws laws_of(const std::string& valve, const std::string& friction,
                                {"lugre", FrictionLaw::lugre}}),
           choice<ChamberLaw>("chamber_law", chamber,
                              {{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}),
-          electronics};
+          electronics ? sms::DriveLaw::filtered : sms::DriveLaw::direct};
 }
 
 PositionControl control_of(const std::string& name) {

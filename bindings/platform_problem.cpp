@@ -102,7 +102,7 @@ std::unique_ptr<PlatformLoopProblem> make_loop_problem(std::vector<est::Platform
                                                        const std::string& valve, const std::string& chambers,
                                                        int masses, double window, double longest_step, int threads) {
   sms::ActuatorLaws laws = laws_of(friction, valve, chambers);
-  laws.drive_filter = electronics;
+  laws.drive = electronics ? sms::DriveLaw::filtered : sms::DriveLaw::direct;
   return std::make_unique<PlatformLoopProblem>(
       est::PlatformLoopPlant(std::move(records), platform_noise(noise), of_legs(noise, "valve_command"), laws,
                              control_law(law, compensated, electronics), said, static_cast<sms::MassModel>(masses),

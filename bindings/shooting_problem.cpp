@@ -53,7 +53,7 @@ std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::Bench
                                                           const std::string& valve, const std::string& chambers,
                                                           double window, double longest_step, int threads) {
   sms::ActuatorLaws laws = laws_of(friction, valve, chambers);
-  laws.drive_filter = electronics;
+  laws.drive = electronics ? sms::DriveLaw::filtered : sms::DriveLaw::direct;
   return std::make_unique<BenchLoopProblem>(
       est::BenchLoopPlant(std::move(records), bench_noise(noise), noise.at("valve_command"), laws,
                           control_law(law, compensated, electronics), said, longest_step),

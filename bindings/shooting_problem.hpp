@@ -40,7 +40,7 @@ inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string&
   return {valve_law_of(valve), friction_law(friction),
           choice<ChamberLaw>("chambers", chambers,
                              {{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}),
-          false};
+          sms::DriveLaw::direct};
 }
 
 inline sms::estimation::Hold hold_of(const std::string& hold) {

@@ -104,7 +104,7 @@ class VirtualRig {
  private:
   static sms::Platform<double> platform(const std::array<Params, 3>& params) {
     sms::ActuatorLaws laws = sms::published_laws();
-    laws.drive_filter = true;
+    laws.drive = sms::DriveLaw::filtered;
     auto plant = sms::make_platform(params[0], laws, sms::MassModel::corrected);
     for (int i = 0; i < 3; ++i) {
       plant.params[i] = params[std::size_t(i)];

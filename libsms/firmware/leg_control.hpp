@@ -27,7 +27,7 @@ struct LegSettings {
 inline LegSettings leg_settings(const Parameters& p) {
   LegSettings s;
   s.pid = pid_settings(p.machine);
-  s.pid.anti_windup = p.settings.anti_windup > 0.5f;
+  s.pid.anti_windup = p.settings.anti_windup > 0.5f ? AntiWindup::conditional_integration : AntiWindup::none;
   s.proportional = s.pid;
   s.proportional.integral = 0.0f;
   s.proportional.derivative = 0.0f;

@@ -51,6 +51,8 @@ const char* sms_status_string(sms_status status) {
       return "outside the workspace of the mechanism";
     case SMS_NOT_CONVERGED:
       return "the iteration did not converge";
+    case SMS_WRONG_ABI:
+      return "parameters of other headers than those of this library";
   }
   return "unknown status";
 }
@@ -68,7 +70,7 @@ const sms_param_info* sms_param_describe(int index) {
 }
 
 void sms_published_laws(sms_actuator_laws* laws) {
-  *laws = {SMS_VALVE_ISO_0_4_MPA, SMS_FRICTION_ACCELERATION_DEPENDENT, SMS_CHAMBER_POLYTROPIC, false};
+  *laws = {SMS_VALVE_ISO_0_4_MPA, SMS_FRICTION_ACCELERATION_DEPENDENT, SMS_CHAMBER_POLYTROPIC, SMS_DRIVE_DIRECT};
 }
 
 }  // extern "C"

@@ -109,7 +109,9 @@ static void check_dynamics(const sms_params *params, const sms_paramsf *paramsf)
   for (masses = SMS_MASSES_CORRECTED; masses <= SMS_MASSES_LUMPED; ++masses) {
     check(sms_mechanism_from_params(params, (sms_mass_model)masses, &mechanism) == SMS_OK, "mass model");
     check(mechanism.gravity == params->gravity, "fields are where C has them");
-    check(mechanism.links_move == (masses == SMS_MASSES_CORRECTED || masses == SMS_MASSES_TABLE), "even behind bool");
+    check(mechanism.moving ==
+              (masses == SMS_MASSES_CORRECTED || masses == SMS_MASSES_TABLE ? SMS_MOVING_ALL : SMS_MOVING_PLATFORM),
+          "what moves");
     check(sms_mechanism_from_paramsf(paramsf, (sms_mass_model)masses, &mechanismf) == SMS_OK, "in float");
     check(sms_forward_dynamics(&mechanism, q, qdot, force, &wrench, NULL, qddot) == SMS_OK, "forward dynamics");
     check(sms_inverse_dynamics(&mechanism, q, qdot, qddot, &wrench, NULL, back) == SMS_OK, "inverse dynamics");
@@ -145,7 +147,7 @@ static void check_dynamics(const sms_params *params, const sms_paramsf *paramsf)
   check(model.a[0][3] == 1.0 && model.b[0][0] == 0.0, "x = (dq, dq')");
   check(model.eigenfrequency[0] > 1.5 && model.eigenfrequency[2] < 3.5, "eigenfrequencies");
   check(sms_end_stop_force(params, 0.2, 1.0) == 0.0 && sms_end_stop_force(params, -1e-3, 0.0) > 0.0, "end stop");
-  sms_force_range(params, &push, &pull);
+  check(sms_force_range(params, &push, &pull) == SMS_OK, "force range");
   check(push > pull && pull > 1042.0, "the supply can carry the payload");
   check(close_to(sms_force_share(params, force), 1100.0 / push, 1e-15), "with its largest force for a measure");
 
@@ -261,8 +263,7 @@ int main(void) {
   check(strstr(sms_build_info(), "no-exceptions no-rtti") != NULL, "built as firmware builds it");
   check(strcmp(sms_version(), SMS_VERSION) == 0, "header and archive are of one version");
 
-  sms_params_default(&params);
-  sms_params_defaultf(&paramsf);
+  check(sms_params_default(&params) == SMS_OK && sms_params_defaultf(&paramsf) == SMS_OK, "of one ABI");
   check(sms_params_check(&params, &index) == SMS_OK && index == -1, "defaults are within bounds");
   check(sms_params_checkf(&paramsf, &index) == SMS_OK && index == -1, "float defaults are within bounds");
 

@@ -20,7 +20,7 @@ using Pid = sms::Pid<double>;
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 PidSettings pid_of(double proportional, double integral, double derivative) {
-  return {proportional, integral, derivative, 100.0, 1e-3, 1e9, false};
+  return {proportional, integral, derivative, 100.0, 1e-3, 1e9, sms::AntiWindup::none};
 }
 
 std::vector<double> noise(int n, sms_test::Random& random) {
@@ -50,7 +50,8 @@ TEST_CASE("PID: eq. 7.4 as one difference equation gives the same") {
   for (int run = 0; run < 20; ++run) {
     const double gp = random.uniform(0.1, 50), gi = random.uniform(0.0, 20), gd = random.uniform(0.0, 2.0);
     const double n = random.uniform(10.0, 3000.0), T = 1e-3, h = 0.5 * n * T;
-    const PidSettings s = {gp, gi, gd, n, T, 1e12, run % 2 == 0};
+    const auto anti_windup = run % 2 == 0 ? sms::AntiWindup::conditional_integration : sms::AntiWindup::none;
+    const PidSettings s = {gp, gi, gd, n, T, 1e12, anti_windup};
     const double a0 = 1 + h, a1 = -2.0, a2 = 1 - h;
     const double b0 = gp * a0 + gi * T / 2 * (1 + h) + gd * n;
     const double b1 = gp * a1 + gi * T / 2 * 2 * h - 2 * gd * n;
@@ -69,7 +70,7 @@ TEST_CASE("PID: eq. 7.4 as one difference equation gives the same") {
 TEST_CASE("anti-windup: eq. 7.4 to the bit inside the limits, no memory of the time at a limit") {
   sms_test::Random random;
   PidSettings plain = pid_of(2.0, 5.0, 0.1), guarded = plain;
-  guarded.anti_windup = true;
+  guarded.anti_windup = sms::AntiWindup::conditional_integration;
   Pid a{}, b{};
   for (const double e : noise(1000, random)) {
     CHECK(same_bits(sms::pid_step(plain, a, e), sms::pid_step(guarded, b, e)));

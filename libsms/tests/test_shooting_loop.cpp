@@ -38,7 +38,7 @@ struct Simulated {
 
 Simulated simulated(const Case& c) {
   sms::ActuatorLaws laws = sms::published_laws();
-  laws.drive_filter = c.law.electronics;
+  laws.drive = c.law.electronics ? sms::DriveLaw::filtered : sms::DriveLaw::direct;
   const auto bench = sms::make_bench(c.p, laws);
   sms::Simulation<sms::Bench<double>> s(bench);
   const auto begin = sms::bench_at_rest(bench, c.first, 0.0, 3e5);
@@ -73,7 +73,7 @@ Simulated simulated(const Case& c) {
 
 est::BenchLoopPlant plant_of(const Case& c, const est::BenchRecord& record, double longest_step = 1e-3) {
   sms::ActuatorLaws laws = sms::published_laws();
-  laws.drive_filter = c.law.electronics;
+  laws.drive = c.law.electronics ? sms::DriveLaw::filtered : sms::DriveLaw::direct;
   return {{record}, {1.0, 1.0, 1.0, 1.0}, 1.0, laws, c.law, c.p, longest_step};
 }
 

@@ -17,16 +17,22 @@
 
 namespace sms {
 
+// What is between the command and the valve.
+enum class DriveLaw : int {
+  direct,   // nothing
+  filtered  // the filter behind the pulse width (section 7.3.3)
+};
+
 // Which law stands for which part.
 struct ActuatorLaws {
   ValveLaw valve;
   FrictionLaw friction;
   ChamberLaw chamber;
-  bool drive_filter;  // the command passes the filter behind the pulse width (section 7.3.3)
+  DriveLaw drive;
 };
 
 inline constexpr ActuatorLaws published_laws() {
-  return {ValveLaw::iso_0_4_mpa, FrictionLaw::acceleration_dependent, ChamberLaw::polytropic, false};
+  return {ValveLaw::iso_0_4_mpa, FrictionLaw::acceleration_dependent, ChamberLaw::polytropic, DriveLaw::direct};
 }
 
 template <typename S>
@@ -34,7 +40,7 @@ struct ActuatorState {
   Gas<S> lower;
   Gas<S> upper;
   Lag<S> spool;       // as the command that would hold it there: V, V/s
-  Lag<S> drive;       // voltage at the valve, V, V/s; with drive_filter
+  Lag<S> drive;       // voltage at the valve, V, V/s; with DriveLaw::filtered
   S deflection;       // of the seals, m; Dahl, LuGre, presliding_share
   S supply_pressure;  // in the reservoir at the valve, Pa; with supply_line_resistance
   S film;             // speed of the lubricant's film, m/s; with friction_lag
@@ -77,7 +83,7 @@ void fill_chambers(const Params<S>& p, const ActuatorLaws& laws, const ActuatorS
 template <typename S>
 void drive_rates(const Params<S>& p, const ActuatorLaws& laws, const ActuatorState<S>& state, const S& command,
                  ActuatorState<S>& rate) {
-  if (laws.drive_filter) {
+  if (laws.drive == DriveLaw::filtered) {
     const S omega = angular_frequency(p.dac_filter_frequency);
     rate.drive = lag_rate(omega, p.dac_filter_damping_ratio, state.drive, command);
     rate.spool = spool_rate(p, state.spool, state.drive.value);

@@ -21,7 +21,7 @@ struct BenchState {
 
 template <typename S>
 struct BenchInput {
-  S command;     // V, to the valve or, with drive_filter, to the filter in front of it
+  S command;     // V, to the valve or, with DriveLaw::filtered, to the filter in front of it
   S load_force;  // F_L, N, against extension
 };
 

@@ -25,6 +25,12 @@ namespace sms {
 
 enum class MassModel { corrected, table, platform, lumped };
 
+// What of it moves.
+enum class MovingBodies : int {
+  platform,  // the links' masses are none, or lumped into the platform
+  all
+};
+
 // A rigid body in axes of its own, which whoever holds it states, as well as where cog and inertia are taken from.
 template <typename S>
 struct Body {
@@ -38,7 +44,7 @@ struct Bodies {
   Body<S> platform;    // platform axes; cog from the reference point, inertia about the cog
   Body<S> hung[6];     // cylinder or rod, link axes; cog from B_i, inertia about B_i
   Body<S> sliding[3];  // piston, link axes; cog from P_i, inertia about P_i
-  bool links_move;     // false: the platform is all there is
+  MovingBodies moving;
 };
 
 // What a mass m at c adds to the inertia about the origin.
@@ -178,7 +184,8 @@ template <typename S>
 Bodies<S> make_bodies(const Params<S>& p, const Geometry<S>& g, MassModel model) {
   Bodies<S> bodies;
   bodies.platform = joined(top_frame(p, g), payload(p, g));
-  bodies.links_move = model == MassModel::corrected || model == MassModel::table;
+  const bool whole = model == MassModel::corrected || model == MassModel::table;
+  bodies.moving = whole ? MovingBodies::all : MovingBodies::platform;
   if (model == MassModel::table) {
     table_links(p, g, bodies);
   } else {

@@ -17,7 +17,7 @@
 // Settings and state are plain structs of the caller; a state of zeros is at rest. Any sampling rate: the bilinear
 // transform is stable for every N T_s, though beyond N T_s = 2 the derivative alternates.
 //
-// Two options the source does not have. Anti-windup: the integral stands still while the output is at a limit and the
+// Two options the source does not have. Anti-windup by conditional integration: the integral stands still while the output is at a limit and the
 // error would push it further. Bumpless transfer: pid_follow() before the loop is closed, pid_change_gains() while it
 // is.
 #pragma once
@@ -55,26 +55,27 @@ S differentiate(const S& corner, const S& period, Differentiator<S>& state, cons
 
 // ---- PID ----
 
+// What the integral does while the output is at its limit.
+enum class AntiWindup : int {
+  none,                    // goes on: eq. 7.4 as it stands, clipped
+  conditional_integration  // stands still where the error would push it further
+};
+
 template <typename S>
 struct PidSettings {
-  S proportional;    // G_P, V/m
-  S integral;        // G_I, V/(m s)
-  S derivative;      // G_D, V s/m
-  S corner;          // N, rad/s
-  S period;          // T_s, s
-  S limit;           // the output stays within +- limit, V
-  bool anti_windup;  // off: eq. 7.4 as it stands, clipped
+  S proportional;  // G_P, V/m
+  S integral;      // G_I, V/(m s)
+  S derivative;    // G_D, V s/m
+  S corner;        // N, rad/s
+  S period;        // T_s, s
+  S limit;         // the output stays within +- limit, V
+  AntiWindup anti_windup;
 };
 
 template <typename S>
 PidSettings<S> pid_settings(const Params<S>& p) {
-  return {p.proportional_gain,
-          p.integral_gain,
-          p.derivative_gain,
-          p.differentiator_corner,
-          p.control_period,
-          command_limit<S>(),
-          false};
+  return {p.proportional_gain, p.integral_gain,    p.derivative_gain, p.differentiator_corner,
+          p.control_period,    command_limit<S>(), AntiWindup::none};
 }
 
 template <typename S>
@@ -92,7 +93,7 @@ S pid_step(const PidSettings<S>& settings, Pid<S>& state, const S& error) {
                  state.integral;
   const S output = rest + growth;
   const bool winding = (output > settings.limit && growth > S(0)) || (output < -settings.limit && growth < S(0));
-  if (settings.anti_windup && winding) {
+  if (settings.anti_windup == AntiWindup::conditional_integration && winding) {
     return limited<S>(rest, -settings.limit, settings.limit);
   }
   state.integral += growth;

@@ -152,7 +152,7 @@ void evaluate_dynamics(const Mechanism<S>& mechanism, const Pose<S>& pose, const
   t.weight.setZero();
   t.potential_energy = S(0);
   add_platform(mechanism.bodies.platform, mechanism.gravity, t);
-  if (mechanism.bodies.links_move) {
+  if (mechanism.bodies.moving == MovingBodies::all) {
     add_links(mechanism, t);
   }
 }

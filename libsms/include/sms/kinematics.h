@@ -6,75 +6,30 @@
  * A three-element array that holds q', q'' or an extension has one element a coordinate or actuator, in that order.
  *
  * Example: libsms/examples/02_kinematics.c */
+#include "sms/sms.h" /* before the guard: it includes this header */
+
 #ifndef SMS_KINEMATICS_H
 #define SMS_KINEMATICS_H
-
-#include "sms/sms.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/* sms_geometry, sms_pose, sms_convergence, sms_motion, sms_joint_angles; in float sms_geometryf, ... */
+#define SMS_STRUCTS "sms/kinematics_structs.def"
+#include "sms/structs.h"
+
 /* ---- geometry (geometry.hpp) ------------------------------------------------------------------------------------- */
-/* Links 0 to 2 are the actuators, 3 to 5 the Panhard rods; link i joins B_i on the ground to P_i on the platform. */
-typedef struct sms_geometry {
-  double base[6][3];         /* B_i, m, world axes */
-  double platform[6][3];     /* P_i, m, from the reference point, platform axes */
-  double reference[3];       /* the reference point at rest, m: height, x and y of a pose are this point's */
-  double joint_axis[6][3];   /* ground-fixed axis of the universal joint at B_i, unit vector */
-  double actuator_length[3]; /* at zero extension, m */
-  double panhard_length[3];  /* m */
-  double stroke;             /* m */
-} sms_geometry;
-
-typedef struct sms_geometryf {
-  float base[6][3];
-  float platform[6][3];
-  float reference[3];
-  float joint_axis[6][3];
-  float actuator_length[3];
-  float panhard_length[3];
-  float stroke;
-} sms_geometryf;
-
-/* Made once from the parameters, then handed to every call; parameters changed later need a new one. */
-void sms_geometry_from_params(const sms_params *params, sms_geometry *geometry);
-void sms_geometry_from_paramsf(const sms_paramsf *params, sms_geometryf *geometry);
-
-typedef struct sms_pose {
-  double roll;   /* rad */
-  double pitch;  /* rad */
-  double height; /* of the reference point above ground, m */
-  double yaw;    /* rad */
-  double x;      /* of the reference point, m, world axes */
-  double y;      /* m */
-} sms_pose;
-
-typedef struct sms_posef {
-  float roll;
-  float pitch;
-  float height;
-  float yaw;
-  float x;
-  float y;
-} sms_posef;
+/* Made once from the parameters, then handed to every call; parameters changed later need a new one.
+ * SMS_WRONG_ABI. */
+sms_status sms_geometry_from_params(const sms_params *params, sms_geometry *geometry);
+sms_status sms_geometry_from_paramsf(const sms_paramsf *params, sms_geometryf *geometry);
 
 /* Level, all actuators retracted. */
 void sms_rest_pose(const sms_geometry *geometry, sms_pose *pose);
 void sms_rest_posef(const sms_geometryf *geometry, sms_posef *pose);
 
 /* ---- position (inverse_kinematics.hpp, forward_kinematics.hpp) --------------------------------------------------- */
-/* How an iteration ended; written whatever the status. */
-typedef struct sms_convergence {
-  int iterations;  /* Newton steps taken */
-  double residual; /* largest error of a link's length, m */
-} sms_convergence;
-
-typedef struct sms_convergencef {
-  int iterations;
-  float residual;
-} sms_convergencef;
-
 /* Extensions, yaw, x and y of q = (roll, pitch, height).
  *
  *   start        where the search begins (its yaw, x, y): the last pose of a motion saves an iteration.
@@ -100,25 +55,6 @@ sms_status sms_six_leg_inverse(const sms_geometry *geometry, const sms_pose *pos
 sms_status sms_six_leg_inversef(const sms_geometryf *geometry, const sms_posef *pose, float length[6]);
 
 /* ---- velocity and acceleration (motion.hpp) ---------------------------------------------------------------------- */
-/* Everything that moves, in a pose that fits the rods: one that inverse or forward kinematics gave. */
-typedef struct sms_motion {
-  double qdot[3];                   /* (roll, pitch, height)', rad/s, rad/s, m/s */
-  double qddot[3];                  /* (roll, pitch, height)'', rad/s^2, rad/s^2, m/s^2 */
-  double parasitic_rate[3];         /* (yaw, x, y)', rad/s, m/s, m/s */
-  double parasitic_acceleration[3]; /* (yaw, x, y)'', rad/s^2, m/s^2, m/s^2 */
-  double extension_rate[3];         /* m/s */
-  double extension_acceleration[3]; /* m/s^2 */
-} sms_motion;
-
-typedef struct sms_motionf {
-  float qdot[3];
-  float qddot[3];
-  float parasitic_rate[3];
-  float parasitic_acceleration[3];
-  float extension_rate[3];
-  float extension_acceleration[3];
-} sms_motionf;
-
 /* From q' and q''. SMS_NOT_A_NUMBER. */
 sms_status sms_inverse_motion(const sms_geometry *geometry, const sms_pose *pose, const double qdot[3],
                               const double qddot[3], sms_motion *motion);
@@ -159,18 +95,7 @@ sms_status sms_reach(const sms_geometry *geometry, double height, double directi
 sms_status sms_reachf(const sms_geometryf *geometry, float height, float direction_roll, float direction_pitch,
                       float *angle);
 
-/* How far the joints have turned from the rest pose, rad: link i against the ground and against the platform. */
-typedef struct sms_joint_angles {
-  double base[6];
-  double platform[6];
-} sms_joint_angles;
-
-typedef struct sms_joint_anglesf {
-  float base[6];
-  float platform[6];
-} sms_joint_anglesf;
-
-/* In a pose that fits the rods. SMS_NOT_A_NUMBER. */
+/* The joints' angles in a pose that fits the rods. SMS_NOT_A_NUMBER. */
 sms_status sms_joint_angles_at(const sms_geometry *geometry, const sms_pose *pose, sms_joint_angles *angles);
 sms_status sms_joint_angles_atf(const sms_geometryf *geometry, const sms_posef *pose, sms_joint_anglesf *angles);
 

@@ -24,7 +24,7 @@ S weight_power_rate(const Mechanism<S>& mechanism, const Motion<S>& m) {
   const Vec3<S> circling = cross(m.angular_velocity, arm);
   const Vec3<S> acceleration = m.linear_bias + cross(m.angular_bias, arm) + cross(m.angular_velocity, circling);
   S power_rate = -platform.mass * mechanism.gravity * acceleration(2);
-  for (int i = 0; mechanism.bodies.links_move && i < 3; ++i) {
+  for (int i = 0; mechanism.bodies.moving == MovingBodies::all && i < 3; ++i) {
     using Two = Pair<S>;
     const LinkView<Two> link = link_view(mechanism, i, m);
     const LinkMotion<Two> motion = link_motion(link.state);

@@ -2,10 +2,11 @@
 // ceres::Jet in a fit. Params<double> and Params<float> are the C structs of sms.h with defaults, so that firmware and
 // desk share one layout and no call copies anything.
 //
-// Every member is an S, one after the other: what is done to all parameters alike is a loop over them (values_of), which
+// Every parameter is an S, one after the other, behind what the C structs open with (abi and size): what is done to all parameters alike is a loop over them (values_of), which
 // a compiler leaves a loop. Two hundred statements at each scalar were a third of the code of a fit.
 #pragma once
 
+#include <cstddef>
 #include <new>
 
 #include "sms/sms.h"
@@ -35,6 +36,8 @@ struct Params {
 template <>
 struct Params<double> : sms_params {
   Params() {
+    abi = SMS_ABI;
+    size = sizeof(sms_params);
 #define SMS_PARAM(name_, unit, lower, value, upper, uncertainty, source, doc) name_ = value;
 #include "sms/params.def"
   }
@@ -43,6 +46,8 @@ struct Params<double> : sms_params {
 template <>
 struct Params<float> : sms_paramsf {
   Params() {
+    abi = SMS_ABI;
+    size = sizeof(sms_paramsf);
 #define SMS_PARAM(name_, unit, lower, value, upper, uncertainty, source, doc) name_ = float(value);
 #include "sms/params.def"
   }
@@ -51,8 +56,10 @@ struct Params<float> : sms_paramsf {
 // All parameters in the order of params.def.
 template <typename S>
 S* values_of(Params<S>& params) {
-  static_assert(sizeof(Params<S>) == param_count * sizeof(S), "parameters lie one after the other");
-  return reinterpret_cast<S*>(&params);
+  constexpr std::size_t before = sizeof(Params<S>) - param_count * sizeof(S);
+  static_assert(before == 0 || before == sizeof(sms_params::abi) + sizeof(sms_params::size),
+                "parameters lie one after the other");
+  return reinterpret_cast<S*>(reinterpret_cast<char*>(&params) + before);
 }
 
 template <typename S>

@@ -3,10 +3,15 @@
  * Conventions
  *   SI units everywhere, absolute pressures. The caller owns every struct; nothing is allocated, nothing is global,
  *   no call keeps a pointer. A name with the ending f works in float, the same name without it in double, as in
- *   <math.h>; both are always there. A function that can fail returns sms_status and leaves its outputs as they were.
+ *   <math.h>; both are always there, and a struct is written once for both (..._structs.def). A function that can fail
+ *   returns sms_status and leaves its outputs as they were.
  *
- * The mechanism is in kinematics.h and dynamics.h, its tables in table.h, the plants in plant.h; they come with this
- * header.
+ * Headers and library fit together, or the first call says so. sms_params_default writes into the parameters which
+ * headers they are of, and every function that takes parameters, or a plant made of them, compares that with its own:
+ * where they differ it returns SMS_WRONG_ABI, and NaN where it returns a number.
+ *
+ * The mechanism is in kinematics.h and dynamics.h, its tables in table.h, valve and chambers in pneumatics.h, controllers
+ * in controller.h, the plants in plant.h; they come with this header.
  *
  * Frames (kinematics.h)                           Order of calls
  *
@@ -25,6 +30,9 @@
 #ifndef SMS_SMS_H
 #define SMS_SMS_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "sms/version.h"
 
 #ifdef __cplusplus
@@ -37,7 +45,8 @@ typedef enum sms_status {
   SMS_NOT_A_NUMBER = 1,     /* an input is NaN or infinite */
   SMS_OUT_OF_RANGE = 2,     /* an input lies outside what it can be; for a parameter: its bounds in params.def */
   SMS_OUT_OF_WORKSPACE = 3, /* no pose of the built mechanism fits */
-  SMS_NOT_CONVERGED = 4     /* the bounded number of iterations did not suffice */
+  SMS_NOT_CONVERGED = 4,    /* the bounded number of iterations did not suffice */
+  SMS_WRONG_ABI = 5         /* parameters that were not initialised, or of other headers than the library's */
 } sms_status;
 
 /* What a status means, in a few words; never NULL. */
@@ -51,21 +60,25 @@ const char *sms_version(void);
 const char *sms_build_info(void);
 
 /* ---- parameters (params.def) ----------------------------------------------------------------------------------- */
-typedef struct sms_params {
-#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) double name;
-#include "sms/params.def"
-} sms_params;
+/* sms_params and sms_piston; in float sms_paramsf and sms_pistonf. */
+#define SMS_STRUCTS "sms/sms_structs.def"
+#include "sms/structs.h"
 
-typedef struct sms_paramsf {
-#define SMS_PARAM(name, unit, lower, value, upper, uncertainty, source, doc) float name;
-#include "sms/params.def"
-} sms_paramsf;
+/* Every parameter at its default: the first call. SMS_WRONG_ABI, and nothing is written: the library that is linked was
+ * built from other headers than the program. */
+sms_status sms_params_init(unsigned long abi, size_t size, sms_params *params);
+sms_status sms_params_initf(unsigned long abi, size_t size, sms_paramsf *params);
 
-/* Every parameter at its default. */
-void sms_params_default(sms_params *params);
-void sms_params_defaultf(sms_paramsf *params);
+/* The same, with the number and the size that the program was compiled with. */
+static inline sms_status sms_params_default(sms_params *params) {
+  return sms_params_init(SMS_ABI, sizeof(sms_params), params);
+}
+static inline sms_status sms_params_defaultf(sms_paramsf *params) {
+  return sms_params_initf(SMS_ABI, sizeof(sms_paramsf), params);
+}
 
-/* SMS_OK, or what is wrong with the first bad parameter, whose index goes to *index (untouched when all are good). */
+/* SMS_OK, or what is wrong with the first bad parameter, whose index goes to *index (untouched when all are good, and
+ * with SMS_WRONG_ABI). */
 sms_status sms_params_check(const sms_params *params, int *index);
 sms_status sms_params_checkf(const sms_paramsf *params, int *index);
 
@@ -86,22 +99,6 @@ int sms_param_count(void);
 const sms_param_info *sms_param_describe(int index);
 
 /* ---- one cylinder (friction.hpp, piston.hpp) --------------------------------------------------------------------- */
-typedef struct sms_piston {
-  double extension;      /* x, m, 0 retracted */
-  double velocity;       /* m/s, positive while extending */
-  double acceleration;   /* m/s^2 */
-  double pressure_lower; /* p_a, Pa absolute: extends the rod */
-  double pressure_upper; /* p_b, Pa absolute; ambient for a single-acting cylinder */
-} sms_piston;
-
-typedef struct sms_pistonf {
-  float extension;
-  float velocity;
-  float acceleration;
-  float pressure_lower;
-  float pressure_upper;
-} sms_pistonf;
-
 /* Friction force of the cylinder, N, positive against extension: eq. 6.5 to 6.7 and the effects on friction. */
 double sms_friction(const sms_params *params, const sms_piston *piston);
 float sms_frictionf(const sms_paramsf *params, const sms_pistonf *piston);
@@ -118,9 +115,11 @@ float sms_rod_forcef(const sms_paramsf *params, const sms_pistonf *piston);
 }
 #endif
 
+#include "sms/controller.h"
 #include "sms/dynamics.h"
 #include "sms/kinematics.h"
 #include "sms/plant.h"
+#include "sms/pneumatics.h"
 #include "sms/table.h"
 
 #endif

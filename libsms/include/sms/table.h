@@ -3,46 +3,20 @@
  * included.
  *
  * Example: libsms/examples/04_table.c */
+#include "sms/sms.h" /* before the guard: it includes this header */
+
 #ifndef SMS_TABLE_H
 #define SMS_TABLE_H
-
-#include "sms/sms.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* ---- tables (table.hpp) --------------------------------------------------------------------------------------------
- */
-/* Evenly spaced nodes of one coordinate. */
-typedef struct sms_table_axis {
-  int count;              /* of nodes */
-  double lower;           /* the first node, rad or m */
-  double upper;           /* the last node */
-  double reciprocal_step; /* (count - 1) / (upper - lower); 0 for a single node */
-} sms_table_axis;
+/* sms_table_axis, sms_table; in float sms_table_axisf, sms_tablef. */
+#define SMS_STRUCTS "sms/table_structs.def"
+#include "sms/structs.h"
 
-typedef struct sms_table {
-  sms_table_axis roll;
-  sms_table_axis pitch;
-  sms_table_axis height;   /* a single node: a table at one height */
-  const double *extension; /* m, [roll][pitch][height][actuator], the last index next to each other */
-} sms_table;
-
-typedef struct sms_table_axisf {
-  int count;
-  float lower;
-  float upper;
-  float reciprocal_step;
-} sms_table_axisf;
-
-typedef struct sms_tablef {
-  sms_table_axisf roll;
-  sms_table_axisf pitch;
-  sms_table_axisf height;
-  const float *extension;
-} sms_tablef;
-
+/* ---- tables (table.hpp) ------------------------------------------------------------------------------------------ */
 /* Extensions at (roll, pitch) from a table at one height: bilinear, or by the Catmull-Rom spline. SMS_NOT_A_NUMBER, or
  * SMS_OUT_OF_RANGE: outside the table, a table of several heights, fewer nodes on an axis than 2 or, bicubic, 4. */
 sms_status sms_table_bilinear(const sms_table *table, double roll, double pitch, double extension[3]);

@@ -25,6 +25,21 @@ build/consumer/by_pkg_config | tee build/consumer/by_pkg_config.txt
 grep -q "^libsms $(pkg-config --modversion sms) float+double c++201402L no-exceptions no-rtti$" \
   build/consumer/by_pkg_config.txt
 
+# shellcheck disable=SC2046
+cc -std=c99 -pedantic -Wall -Wextra -Werror libsms/tests/c_pneumatics.c -o build/consumer/pneumatics \
+  $(pkg-config --cflags --libs sms)
+build/consumer/pneumatics
+
+echo "-- each header alone, in C99 and C++14"
+for header in build/prefix/include/sms/*.h; do
+  [ "${header##*/}" != structs.h ] || continue # is included with what it makes
+  printf '#include "sms/%s"\nint main(void) { return 0; }\n' "${header##*/}" >build/consumer/alone.c
+  # shellcheck disable=SC2046  # the flags are words
+  cc -std=c99 -pedantic -Wall -Wextra -Werror -fsyntax-only $(pkg-config --cflags sms) build/consumer/alone.c
+  # shellcheck disable=SC2046
+  c++ -std=c++14 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c++ $(pkg-config --cflags sms) build/consumer/alone.c
+done
+
 echo "-- what the float archive calls"
 archive=$(find build/prefix -name libsmsf.a)
 nm --defined-only --format=posix "$archive" | awk 'NF > 1 { print $1 }' | sort -u >build/consumer/defined.txt

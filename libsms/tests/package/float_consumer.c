@@ -9,7 +9,9 @@ int main(void) {
   float force;
 
   printf("%s\n", sms_build_info());
-  sms_params_defaultf(&params);
+  if (sms_params_defaultf(&params) != SMS_OK) {
+    return 1;
+  }
   force = sms_frictionf(&params, &piston);
   printf("friction %.3f N\n", (double)force);
   return !(force > 38.0f && force < 200.0f);
