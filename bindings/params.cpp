@@ -45,17 +45,18 @@ struct SignalInfo {
   const char* name;
   const char* unit;
   const char* label;
-  double low, high;
+  double low, high, sweep, noise;
   bool of_leg;
   bool has_sensor;
 };
 
 const SignalInfo signal_table[] = {
-#define SMS_SIGNAL(name, unit, label, low, high) {#name, unit, label, low, high, false, false},
-#define SMS_LEG_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high) \
-  {#name, unit, label, low, high, true, true},
-#define SMS_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high) \
-  {#name, unit, label, low, high, false, true},
+#define SMS_SIGNAL(name, unit, label, low, high, sweep) {#name, unit, label, low, high, sweep, 0.0, false, false},
+#define SMS_LEG_SIGNAL(name, unit, label, low, high, sweep) {#name, unit, label, low, high, sweep, 0.0, true, false},
+#define SMS_LEG_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high, sweep, noise) \
+  {#name, unit, label, low, high, sweep, noise, true, true},
+#define SMS_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high, sweep, noise) \
+  {#name, unit, label, low, high, sweep, noise, false, true},
 #include "sms/signals.def"
 };
 
@@ -103,9 +104,11 @@ void bind_params(py::module_& m) {
   py::class_<SignalInfo>(m, "SignalInfo", "What signals.def says of one signal.")
       .def_readonly("name", &SignalInfo::name)
       .def_readonly("unit", &SignalInfo::unit, "SI, as pint reads it")
-      .def_readonly("label", &SignalInfo::label, "of its sensor, in words")
+      .def_readonly("label", &SignalInfo::label, "what is measured, in words")
       .def_readonly("low", &SignalInfo::low, "What such a sensor usually reads: no less,")
       .def_readonly("high", &SignalInfo::high, "and no more.")
+      .def_readonly("sweep", &SignalInfo::sweep, "What a run usually sweeps; 0 where the signal may stand still.")
+      .def_readonly("noise", &SignalInfo::noise, "Standard deviation of a sample where none is declared; 0: not known.")
       .def_readonly("of_leg", &SignalInfo::of_leg, "Each actuator of the platform has one.")
       .def_readonly("has_sensor", &SignalInfo::has_sensor, "There are parameters for the errors of its sensor.");
   m.def(

@@ -76,7 +76,7 @@ class SignalInfo:
     @property
     def label(self) -> str:
         """
-        of its sensor, in words
+        what is measured, in words
         """
     @property
     def low(self) -> float:
@@ -87,9 +87,19 @@ class SignalInfo:
     def name(self) -> str:
         ...
     @property
+    def noise(self) -> float:
+        """
+        Standard deviation of a sample where none is declared; 0: not known.
+        """
+    @property
     def of_leg(self) -> bool:
         """
         Each actuator of the platform has one.
+        """
+    @property
+    def sweep(self) -> float:
+        """
+        What a run usually sweeps; 0 where the signal may stand still.
         """
     @property
     def unit(self) -> str:
@@ -1470,7 +1480,7 @@ class Params:
     @property
     def sensor_gain_chamber_pressure_lower(self) -> float:
         """
-        sensor_gain: relative gain error of the lower chamber's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the lower chamber pressure sensor [1]; neutral
         """
     @sensor_gain_chamber_pressure_lower.setter
     def sensor_gain_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1478,7 +1488,7 @@ class Params:
     @property
     def sensor_gain_chamber_pressure_upper(self) -> float:
         """
-        sensor_gain: relative gain error of the upper chamber's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the upper chamber pressure sensor [1]; neutral
         """
     @sensor_gain_chamber_pressure_upper.setter
     def sensor_gain_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1502,7 +1512,7 @@ class Params:
     @property
     def sensor_gain_rod_force(self) -> float:
         """
-        sensor_gain: relative gain error of the load cell [1]; neutral
+        sensor_gain: relative gain error of the rod force sensor [1]; neutral
         """
     @sensor_gain_rod_force.setter
     def sensor_gain_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1518,7 +1528,7 @@ class Params:
     @property
     def sensor_gain_supply_pressure(self) -> float:
         """
-        sensor_gain: relative gain error of the supply's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the supply pressure sensor [1]; neutral
         """
     @sensor_gain_supply_pressure.setter
     def sensor_gain_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1526,7 +1536,7 @@ class Params:
     @property
     def sensor_gain_tank_pressure(self) -> float:
         """
-        sensor_gain: relative gain error of the tank's pressure sensor [1]; neutral
+        sensor_gain: relative gain error of the tank pressure sensor [1]; neutral
         """
     @sensor_gain_tank_pressure.setter
     def sensor_gain_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1534,7 +1544,7 @@ class Params:
     @property
     def sensor_gain_tank_temperature(self) -> float:
         """
-        sensor_gain: relative gain error of the tank's thermocouple [1]; neutral
+        sensor_gain: relative gain error of the tank temperature sensor [1]; neutral
         """
     @sensor_gain_tank_temperature.setter
     def sensor_gain_tank_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1542,7 +1552,7 @@ class Params:
     @property
     def sensor_lag_chamber_pressure_lower(self) -> float:
         """
-        sensor_lag: by how much the filter of the lower chamber's pressure sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the sensor of chamber_pressure_lower is late [s]; neutral
         """
     @sensor_lag_chamber_pressure_lower.setter
     def sensor_lag_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1550,7 +1560,7 @@ class Params:
     @property
     def sensor_lag_chamber_pressure_upper(self) -> float:
         """
-        sensor_lag: by how much the filter of the upper chamber's pressure sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the sensor of chamber_pressure_upper is late [s]; neutral
         """
     @sensor_lag_chamber_pressure_upper.setter
     def sensor_lag_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1558,7 +1568,7 @@ class Params:
     @property
     def sensor_lag_extension(self) -> float:
         """
-        sensor_lag: by how much the filter of the position sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the sensor of extension is late [s]; neutral
         """
     @sensor_lag_extension.setter
     def sensor_lag_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1566,7 +1576,7 @@ class Params:
     @property
     def sensor_lag_pitch(self) -> float:
         """
-        sensor_lag: by how much the filter of the pitch sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the sensor of pitch is late [s]; neutral
         """
     @sensor_lag_pitch.setter
     def sensor_lag_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1574,7 +1584,7 @@ class Params:
     @property
     def sensor_lag_roll(self) -> float:
         """
-        sensor_lag: by how much the filter of the roll sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the sensor of roll is late [s]; neutral
         """
     @sensor_lag_roll.setter
     def sensor_lag_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1582,7 +1592,7 @@ class Params:
     @property
     def sensor_lag_tank_pressure(self) -> float:
         """
-        sensor_lag: by how much the filter of the tank's pressure sensor is late [s]; neutral
+        sensor_lag: by how much the filter of the sensor of tank_pressure is late [s]; neutral
         """
     @sensor_lag_tank_pressure.setter
     def sensor_lag_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1590,7 +1600,7 @@ class Params:
     @property
     def sensor_offset_chamber_pressure_lower(self) -> float:
         """
-        sensor_offset: zero error of the lower chamber's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the lower chamber pressure sensor [Pa]; neutral
         """
     @sensor_offset_chamber_pressure_lower.setter
     def sensor_offset_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1598,7 +1608,7 @@ class Params:
     @property
     def sensor_offset_chamber_pressure_upper(self) -> float:
         """
-        sensor_offset: zero error of the upper chamber's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the upper chamber pressure sensor [Pa]; neutral
         """
     @sensor_offset_chamber_pressure_upper.setter
     def sensor_offset_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1622,7 +1632,7 @@ class Params:
     @property
     def sensor_offset_rod_force(self) -> float:
         """
-        sensor_offset: zero error of the load cell [N]; neutral
+        sensor_offset: zero error of the rod force sensor [N]; neutral
         """
     @sensor_offset_rod_force.setter
     def sensor_offset_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1638,7 +1648,7 @@ class Params:
     @property
     def sensor_offset_supply_pressure(self) -> float:
         """
-        sensor_offset: zero error of the supply's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the supply pressure sensor [Pa]; neutral
         """
     @sensor_offset_supply_pressure.setter
     def sensor_offset_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1646,7 +1656,7 @@ class Params:
     @property
     def sensor_offset_tank_pressure(self) -> float:
         """
-        sensor_offset: zero error of the tank's pressure sensor [Pa]; neutral
+        sensor_offset: zero error of the tank pressure sensor [Pa]; neutral
         """
     @sensor_offset_tank_pressure.setter
     def sensor_offset_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1654,7 +1664,7 @@ class Params:
     @property
     def sensor_offset_tank_temperature(self) -> float:
         """
-        sensor_offset: zero error of the tank's thermocouple [K]; neutral
+        sensor_offset: zero error of the tank temperature sensor [K]; neutral
         """
     @sensor_offset_tank_temperature.setter
     def sensor_offset_tank_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:

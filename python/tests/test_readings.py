@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from sms import Params, _core, extensions_of, simulate_bench, simulate_platform, simulate_tank
-from sms.io.signals import SIGNAL_UNITS
-from sms.parameters import PARAMETERS
 from sms.simulation import Run
 
 from validation.random_cases import draw
@@ -134,13 +132,3 @@ def test_the_stiff_step_is_as_near_as_its_size() -> None:
         for how in ({"tolerance": 1e-7}, {"step": 2.5e-4, "stiff": True})
     ]
     assert np.max(np.abs(rolls[0] - rolls[1])) < 1e-4
-
-
-def test_every_signal_stands_in_signals_def() -> None:
-    table = {s.name: s for s in _core.signal_table()}
-    for name, unit in SIGNAL_UNITS.items():
-        stem = name if name in table or name == "time" else name.rpartition("_")[0]
-        assert name == "time" or table[stem].unit == unit, name
-    for name, signal in table.items():
-        assert signal.low < signal.high and signal.label
-        assert signal.has_sensor == (f"sensor_gain_{name}" in PARAMETERS), name

@@ -63,7 +63,7 @@ struct SensorErrors {
 };
 
 // extension_sensor(p), supply_pressure_sensor(p), ...
-#define SMS_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, low, high) \
+#define SMS_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, ...)       \
   template <typename S>                                                                \
   SensorErrors<S> name##_sensor(const Params<S>& p) {                                  \
     return {p.sensor_gain_##name, p.sensor_offset_##name, S(lag), S(clock), S(datum)}; \

@@ -16,7 +16,12 @@ from numpy.typing import NDArray
 from sms.arrays import Array
 from sms.io import check_plant
 from sms.io.errors import InputError
-from sms.io.plausible import extension_range, force_against_pressure, pressure_range
+from sms.io.plausible import (
+    extension_range,
+    force_against_pressure,
+    pressure_range,
+    usual_range,
+)
 from sms.io.records import Finding, Record, Severity
 from sms.io.rig import Rig
 from sms.io.signals import is_pressure
@@ -245,10 +250,16 @@ _OF_CYLINDER: tuple[_Check, ...] = (
     _saturated,
     _too_short,
     pressure_range,
+    usual_range,
     extension_range,
     force_against_pressure,
 )
-_OF_FLOW_TEST: tuple[_Check, ...] = (_time_order, _time_steps, pressure_range)
+_OF_FLOW_TEST: tuple[_Check, ...] = (
+    _time_order,
+    _time_steps,
+    pressure_range,
+    usual_range,
+)
 """What a record of a tank prevents is said by the identification (flow_record.py)."""
 _OF_PLANT: tuple[_Check, ...] = (
     _time_order,
@@ -260,6 +271,7 @@ _OF_PLANT: tuple[_Check, ...] = (
     check_plant.noisy_channels_that_stand_still,
     check_plant.driven_channels_that_hardly_move,
     pressure_range,
+    usual_range,
     check_plant.plausible_extensions,
 )
 """Of a rig whose records a simulation is held against."""

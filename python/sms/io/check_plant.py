@@ -11,27 +11,24 @@ from sms.arrays import Array
 from sms.io.plausible import extension_range
 from sms.io.records import Finding, Record
 from sms.io.rig import Rig
-from sms.io.signals import without_leg
+from sms.io.signals import SIGNALS, without_leg
 
 JITTER = 0.02  #: of the median step; time is taken as even, loggers round their stamps
 SHORTEST = 2.0  #: s of record, the least that shows a motion beside its start
 DEAD_SHARE = 0.2  #: a channel that stands still for this share of a record while others move
 CLIPPED_SHARE = 0.2  #: a channel at its extreme for this share of a record says nothing there
-MOVES = 0.02  #: of a signal's usual range: what counts as a change
-USUAL_RANGE = {
-    "valve_command": 1.0,
-    "extension": 0.1,
-    "chamber_pressure_lower": 1e5,
-    "chamber_pressure_upper": 1e5,
-    "tank_pressure": 1e5,
-}
-"""SI; what a run of this machine sweeps."""
+MOVES = 0.02  #: of what a run usually sweeps: what counts as a change
 OPENS = (
     0.7  #: V from the centre; a command that goes so far both ways feeds and vents what it drives
 )
 NOISY = 0.5  #: of the resolution: with more noise than this a reading cannot stand still, at an end stop neither
 ENDS = {"extension", "valve_command", "setpoint", "tank_pressure", "tank_temperature"}
 """Signals that may rest at an extreme: end stops, a command that is held, a tank that is full."""
+
+
+def _sweep(name: str) -> float:
+    """What a run usually sweeps of a signal, SI; 0 where it may stand still, as time does not."""
+    return SIGNALS[without_leg(name)].sweep if name != "time" else 0.0
 
 
 def even_time(rig: Rig, record: Record) -> Iterator[Finding]:
@@ -68,12 +65,12 @@ def long_enough(rig: Rig, record: Record) -> Iterator[Finding]:
 def dead_channels(rig: Rig, record: Record) -> Iterator[Finding]:
     """A channel that holds one value exactly while its neighbours move."""
     moving = {
-        name: _changes(record.signals[name], USUAL_RANGE[without_leg(name)])
+        name: _changes(record.signals[name], _sweep(name))
         for name in record.signals
-        if without_leg(name) in USUAL_RANGE
+        if _sweep(name)
     }
     for name, values in record.signals.items():
-        if without_leg(name) not in USUAL_RANGE or without_leg(name) == "valve_command":
+        if not _sweep(name) or without_leg(name) == "valve_command":
             continue
         others = [m for other, m in moving.items() if other != name]
         start, length = _longest_constant(values)
@@ -95,7 +92,7 @@ def dead_channels(rig: Rig, record: Record) -> Iterator[Finding]:
 def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
     """A channel that rests at its own extreme for a large part of a record."""
     for name, values in record.signals.items():
-        if without_leg(name) not in USUAL_RANGE or without_leg(name) in ENDS:
+        if not _sweep(name) or without_leg(name) in ENDS:
             continue
         for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
             share = float(np.mean(values == extreme))
@@ -113,7 +110,7 @@ def noisy_channels_that_stand_still(rig: Rig, record: Record) -> Iterator[Findin
     """A channel whose declared noise moves it from sample to sample, and that rests at its own extreme all the same."""
     for name, values in record.signals.items():
         source = rig.signals.get(name)
-        if without_leg(name) not in ENDS & USUAL_RANGE.keys() or source is None:
+        if not _sweep(name) or without_leg(name) not in ENDS or source is None:
             continue
         if not source.noise or source.noise < NOISY * source.resolution or np.ptp(values) == 0.0:
             continue
@@ -144,7 +141,7 @@ def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Findi
     centre = rig.declared("valve_centre").value
     for name, values in record.signals.items():
         stem = without_leg(name)
-        if stem not in USUAL_RANGE or stem == "valve_command":
+        if not _sweep(name) or stem == "valve_command":
             continue
         drive = "valve_command" + name[len(stem) :]
         if drive not in record.signals:  # of a controller that is simulated
@@ -153,7 +150,7 @@ def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Findi
         if min(float(command.max()), -float(command.min())) < OPENS:
             continue
         low, high = np.nanquantile(values, [0.05, 0.95])
-        if high - low < MOVES * USUAL_RANGE[stem]:
+        if high - low < MOVES * _sweep(name):
             yield record.finding(
                 "error",
                 None,
@@ -170,7 +167,7 @@ def plausible_extensions(rig: Rig, record: Record) -> Iterator[Finding]:
 
 
 def _changes(values: Array, usual: float) -> NDArray[np.bool_]:
-    """Where a signal moves by more than MOVES of its usual range within a fiftieth of the record."""
+    """Where a signal moves by more than MOVES of its usual sweep within a fiftieth of the record."""
     window = max(values.size // 50, 1)
     span = np.zeros(values.size, dtype=np.bool_)
     span[window:] = np.abs(values[window:] - values[:-window]) > MOVES * usual

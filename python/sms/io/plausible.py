@@ -7,13 +7,13 @@ property of the machine.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
 from sms.io.records import Finding, Record, Severity
 from sms.io.rig import Rig
-from sms.io.signals import is_pressure
+from sms.io.signals import SIGNALS, is_pressure, without_leg
 
 OVERSHOOT_NOTE, OVERSHOOT_WARNING, OVERSHOOT_ERROR = 0.01, 0.25, 1.0  #: shares of the stroke
 FORCE_RATIO = 5.0  #: how much better another reading must explain the force to be suggested
@@ -44,6 +44,32 @@ def pressure_range(rig: Rig, record: Record) -> Iterator[Finding]:
         if not gauge:
             remedy += ", or write gauge = true if the sensor reads against ambient"
         yield record.finding(severity, lowest + rig.skip_first, signal, message, remedy)
+
+
+def usual_range(rig: Rig, record: Record) -> Iterator[Finding]:
+    """What no sensor of this kind usually reads (signals.def). The extension is held against the stroke instead, and a
+    pressure below vacuum is an error already."""
+    for signal in record.signals:
+        stem = without_leg(signal)
+        if stem in ("time", "extension"):
+            continue
+        usual = SIGNALS[stem]
+        values = record.used(rig, signal)
+        if signal in record.gauge:
+            values = values + rig.declared("ambient_pressure").value
+        low = -inf if is_pressure(signal) else usual.low
+        beyond = np.fmax(values - usual.high, low - values)
+        if not np.any(beyond > 0.0):
+            continue
+        worst = int(np.nanargmax(beyond))
+        yield record.finding(
+            "warning",
+            worst + rig.skip_first,
+            signal,
+            f"{values[worst]:.4g} {usual.unit} lies outside what such a sensor usually reads, {usual.low:g} to "
+            f"{usual.high:g} {usual.unit}",
+            "check its unit, scale and offset",
+        )
 
 
 def extension_range(rig: Rig, record: Record, signal: str = "extension") -> Iterator[Finding]:

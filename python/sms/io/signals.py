@@ -1,10 +1,13 @@
-"""The project's names of measured signals, their SI units, and what each kind of rig needs."""
+"""The measured signals, as the core's signals.def has them, and which of them each kind of rig needs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+
+from sms import _core
+from sms._core import SignalInfo
 
 
 @dataclass(frozen=True)
@@ -33,21 +36,8 @@ def with_controller_simulated(kind: Kind) -> Kind:
 LEGS = (1, 2, 3)
 """The platform's actuators; a signal of one of them ends in its number: extension_2."""
 
-_UNITS = {
-    "time": "s",
-    "valve_command": "V",
-    "setpoint": "m",
-    "spool_position": "m",
-    "extension": "m",
-    "chamber_pressure_lower": "Pa",
-    "chamber_pressure_upper": "Pa",
-    "rod_force": "N",
-    "supply_pressure": "Pa",
-    "tank_pressure": "Pa",
-    "tank_temperature": "K",
-    "roll": "rad",
-    "pitch": "rad",
-}
+SIGNALS: Mapping[str, SignalInfo] = MappingProxyType({s.name: s for s in _core.signal_table()})
+"""What signals.def says of each signal: unit, label, usual range; without the numbers of legs."""
 
 
 def of_legs(*signals: str) -> tuple[str, ...]:
@@ -62,18 +52,23 @@ def without_leg(signal: str) -> str:
 
 
 SIGNAL_UNITS: Mapping[str, str] = MappingProxyType(
-    _UNITS
-    | {
-        name: _UNITS[without_leg(name)]
-        for name in of_legs(
-            "valve_command",
-            "setpoint",
-            "extension",
-            "chamber_pressure_lower",
-            "chamber_pressure_upper",
-        )
-    }
+    {"time": "s"}
+    | {name: signal.unit for name, signal in SIGNALS.items()}
+    | {leg: s.unit for name, s in SIGNALS.items() if s.of_leg for leg in of_legs(name)}
 )
+"""SI, of every column that a record can have."""
+
+
+def with_units(*signals: str) -> tuple[tuple[str, str], ...]:
+    """("extension", "m"), ..."""
+    return tuple((signal, SIGNAL_UNITS[signal]) for signal in signals)
+
+
+def label(signal: str) -> str:
+    """In words: "lower chamber pressure", "position of leg 2"."""
+    words = SIGNALS[without_leg(signal)].label
+    return words if without_leg(signal) == signal else f"{words} of leg {signal[-1]}"
+
 
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {

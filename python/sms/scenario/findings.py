@@ -13,13 +13,13 @@ from sms.arrays import Array
 from sms.comparison.metrics import Metrics, compare_signals
 from sms.requirements.table import ACCURACY
 from sms.scenario.load import Scenario
-from sms.scenario.record import Record
+from sms.scenario.record import POSE, Record
 from sms.scenario.sent import Command
 from sms.units_display import format_quantity
 from sms.workspace_survey import DEGREE
 
 AXES = ("roll", "pitch", "height")
-_UNITS = {"roll": "rad", "pitch": "rad", "height": "m"}
+_UNITS = dict(POSE[:3])
 _MOVED = 1e-3  # rad or m: below it an axis is at rest
 _OSCILLATES = 2.0  # times the commanded speed, RMS
 _AT_REST = 0.02  # m/s RMS: less is no oscillation

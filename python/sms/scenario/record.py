@@ -5,19 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from sms.arrays import Array
+from sms.io.signals import with_units
 
 PER_ACTUATOR = (
-    ("setpoint", "m"),
-    ("extension", "m"),
+    *with_units("setpoint", "extension"),
     ("velocity", "m/s"),
-    ("chamber_pressure_lower", "Pa"),
-    ("chamber_pressure_upper", "Pa"),
-    ("supply_pressure", "Pa"),
-    ("valve_command", "V"),
+    *with_units(
+        "chamber_pressure_lower", "chamber_pressure_upper", "supply_pressure", "valve_command"
+    ),
 )
 POSE = (
-    ("roll", "rad"),
-    ("pitch", "rad"),
+    *with_units("roll", "pitch"),
     ("height", "m"),
     ("yaw", "rad"),
     ("x", "m"),

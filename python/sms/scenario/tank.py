@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from sms.arrays import Array
+from sms.io.signals import with_units
 from sms.scenario.load import Scenario
 from sms.scenario.plant import INTERRUPTED, why_it_stopped
 from sms.scenario.sent import Command
@@ -16,11 +17,9 @@ from sms.simulation import SimulationInterruptedError, SimulationStoppedError, s
 from sms.units_display import format_quantity
 
 SIGNALS = (
-    ("tank_pressure", "Pa"),
-    ("tank_temperature", "K"),
+    *with_units("tank_pressure", "tank_temperature"),
     ("mass_flow", "kg/s"),
-    ("supply_pressure", "Pa"),
-    ("valve_command", "V"),
+    *with_units("supply_pressure", "valve_command"),
 )
 _REACHED = 0.01  # of the way to the supply's or the ambient pressure: as good as there
 

@@ -32,19 +32,10 @@ from sms.estimation.windows import Runs
 from sms.io.errors import InputError
 from sms.io.records import load_record
 from sms.io.rig import DataLayout, Rig, SignalSource, load_rig
-from sms.io.signals import of_legs, without_leg
+from sms.io.signals import SIGNALS, of_legs, without_leg
 from sms.parameters import common_parameter
 from sms.rigs.kinds import KINDS, kind_of
 from sms.units_display import display_unit, significant
-
-TYPICAL_NOISE = {
-    "extension": 0.07e-3,
-    "chamber_pressure_lower": 300.0,
-    "chamber_pressure_upper": 300.0,
-    "tank_pressure": 300.0,
-    "tank_temperature": 0.1,
-}
-"""Standard deviation of a sample, SI, of the sensors of a rig without a file; pressure as in section 6.1."""
 
 
 @dataclass(frozen=True)
@@ -150,9 +141,9 @@ def _named(rig: str) -> Rig:
 def published_rig(kind: str) -> Rig:
     """A rig without records: parameters as published, sensors as on the source's bench."""
     legs = kind == "platform"
-    signals = [s for s in KINDS[kind].outputs if without_leg(s) in TYPICAL_NOISE]
+    noise = {s: SIGNALS[without_leg(s)].noise for s in KINDS[kind].outputs}
     commands = of_legs("valve_command") if legs else ("valve_command",)
-    sources = {s: SignalSource(s, s, noise=TYPICAL_NOISE[without_leg(s)]) for s in signals}
+    sources = {s: SignalSource(s, s, noise=size) for s, size in noise.items() if size > 0.0}
     sources |= {s: SignalSource(s, s) for s in commands}
     return Rig(
         path=Path(kind),

@@ -14,18 +14,11 @@ from importlib.resources import files
 from typing import Any, Literal
 
 from sms.io.rig import Rig
-from sms.io.signals import LEGS, without_leg
+from sms.io.signals import LEGS, SIGNALS, label, without_leg
 from sms.parameters import PARAMETERS, common_parameter, is_of_leg
 
-SIGNALS_IN_WORDS = {
-    "rod_force": "rod force",
-    "chamber_pressure_lower": "lower chamber pressure",
-    "chamber_pressure_upper": "upper chamber pressure",
-    "extension": "position",
-    "supply_pressure": "supply pressure",
+PARTS_IN_WORDS = {
     "chamber_pressure": "chamber pressures",
-    "tank_pressure": "tank's pressure",
-    "tank_temperature": "tank's temperature",
     "proportional_gain": "proportional gain",
     "integral_gain": "integral gain",
     "derivative_gain": "derivative gain",
@@ -119,9 +112,9 @@ def _plausible(
 
 def _said(place: str | None) -> str | None:
     """ "extension_2" -> "position of leg 2"."""
-    if place is None or without_leg(place) == place:
-        return SIGNALS_IN_WORDS.get(place or "", place)
-    return f"{_said(without_leg(place))} of leg {place[-1]}"
+    if place is not None and without_leg(place) in SIGNALS:
+        return label(place)
+    return PARTS_IN_WORDS.get(place or "", place)
 
 
 def _of_leg(parameter: str) -> str:
