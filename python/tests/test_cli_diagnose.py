@@ -36,7 +36,7 @@ def test_a_diagnosis_writes_three_files_and_prints_the_verdict(tmp_path: Path) -
     make_rig(tmp_path, pressure_friction=3e-6)
     result = sms("diagnose", "rig.toml", "--out", "report", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
-    assert "seal friction that grows with pressure" in result.stdout
+    assert "pressure-dependent seal friction" in result.stdout
     assert sorted(p.name for p in (tmp_path / "report").iterdir()) == [
         "diagnosis.json",
         "extended.toml",

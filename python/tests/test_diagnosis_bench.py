@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import tomllib
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +13,7 @@ from numpy.typing import NDArray
 from plant_support import write_bench
 from sms import _core
 from sms.diagnosis import diagnose
-from sms.diagnosis.effects.catalogue import catalogue
+from sms.diagnosis.effects.catalogue import Effect, catalogue
 from sms.diagnosis.localisation.unknown_inputs import confirmed, hats
 from sms.diagnosis.selection.score_test import score_tests
 from sms.estimation.least_squares import Free, fit_windows
@@ -46,13 +49,20 @@ IDS = (
 def test_the_catalogue_has_every_effect_with_all_its_words() -> None:
     effects = [e for kind in ("tank", "bench", "platform") for e in catalogue(kind)]
     assert {e.id for e in effects} >= set(IDS)
-    known = {e.id for e in effects}
     for effect in effects:
-        assert all(
-            (effect.title, effect.cause, effect.signature, effect.separated_by, effect.needs)
-        )
-        assert set(effect.confusable) <= known, effect.id
-        assert "{" not in effect.title + effect.cause + effect.signature + effect.separated_by
+        assert all((effect.title, effect.cause, effect.separated_by, effect.needs))
+        assert "{" not in effect.title + effect.cause + effect.separated_by
+        said, shown = effect.cause.split(" In the records: ")
+        assert said.rstrip(")").endswith(".") and shown.endswith(".") and shown[0].islower()
+
+
+def test_every_key_of_an_entry_is_read() -> None:
+    fields = {f.name for f in dataclasses.fields(Effect)} - {"signal", "of_sensor"}
+    read = fields | {"kinds", "signals", "parts", "signature"}
+    for file in files("sms.diagnosis.effects").iterdir():
+        if file.name.endswith(".toml"):
+            for entry in tomllib.loads(file.read_text(encoding="utf-8"))["effect"]:
+                assert entry.keys() <= read, (file.name, entry["id"], entry.keys() - read)
 
 
 def test_missing_terms_are_neutral_by_default() -> None:

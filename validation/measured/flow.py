@@ -147,8 +147,8 @@ def unseen(curve: Curve, found: Estimate, model: str) -> float:
 def table(folder: Path) -> str:
     """The table in Markdown."""
     lines = [
-        "| curve | tank | C [l/s per bar], ± 1 sd | C_d (HydDown's) | h [W/(m² K)] | pressure left [% of range] "
-        "| temperature left, unseen [K] |",
+        "| curve | tank | C [l/s per bar], ± 1 sd | C_d (HydDown's) | h [W/(m² K)] | pressure residual [% of range] "
+        "| temperature residual, not fitted [K] |",
         "|---|---|---|---|---|---|---|",
     ]
     for name in CURVES:

@@ -34,8 +34,8 @@ def line(name: str, result: FrictionResult) -> str:
 def main() -> None:
     """Print the table."""
     print(f"{EQUATION[LAW]}:\n")
-    print("| rig | speed [mm/s] | Coulomb force [N] | scatter of runs [N] | left [N] | left, unseen runs [N] "
-          "| not shown |")  # fmt: skip
+    print("| rig | speed [mm/s] | Coulomb force [N] | scatter of runs [N] | residual [N] | residual, unseen runs [N] "
+          "| not significant |")  # fmt: skip
     print("|---|---|---|---|---|---|---|")
     for name in RIGS:
         path = Path(__file__).parent / "rigs" / f"{name}.toml"

@@ -118,7 +118,7 @@ def table() -> list[str]:
 
 def _cell(name: str, value: float, error: float) -> str:
     if not np.isfinite(error) or error > 10.0 * abs(value):
-        return "not at all"
+        return "not identifiable"
     unit = PARAMETERS[name].unit
     limit = CENTRE_TOLD if name == "valve_centre" else TOLD * abs(value)
     text = f"± {format_quantity(error, unit, name, 2)}"
@@ -134,5 +134,5 @@ def untold(tests: Sequence[str] = TESTS) -> list[str]:
             for n, (_, e) in expected_errors(test).items()
             if e > (CENTRE_TOLD if n == "valve_centre" else TOLD * abs(PARAMETERS[n].default))
         ]
-        said.append(f"not told by {test}: {', '.join(names)}")
+        said.append(f"not identifiable from {test}: {', '.join(names)}")
     return said

@@ -79,7 +79,7 @@ def main() -> None:
     print("|---|---|---|---|")
     for name, group in groups.items():
         print(f"| {name} | {' | '.join(summary(group))} |")
-    print("\nm that no such test can tell, printed and interval:\n")
+    print("\nm that no such test identifies, printed value and interval:\n")
     for name, group in groups.items():
         for truth, fit in group:
             m = fit.known[COMPONENT[2]]

@@ -119,7 +119,7 @@ def main() -> None:
     symbols = [SYMBOL[name] for name in COMPONENT]
     print(f"{options.repeats} repeats, seed {options.seed}, colour {options.colour:g}\n")
     print("| test | " + " | ".join(f"{s} covered" for s in symbols)
-          + " | C error | b error | m error | b told | m told |")  # fmt: skip
+          + " | C error | b error | m error | b identifiable | m identifiable |")  # fmt: skip
     print("|---|" + "---|" * 8)
     for c in run(options.repeats, options.seed, options.colour):
         cells = [f"{100 * c.covered[n]:.1f} %" for n in COMPONENT]

@@ -64,7 +64,7 @@ def repeat(seed: int) -> Repeat:
 def table(trials: Sequence[Repeat]) -> list[str]:
     """Markdown: coverage, errors, how often shown; then the false claims."""
     lines = [
-        "| parameter | truth | fitted in | inside its bounds | covered | error, rms | shown |",
+        "| parameter | truth | fitted in | inside its bounds | covered | error, rms | significant |",
         "|---|---|---|---|---|---|---|",
     ]
     for name, truth in TRUTH.items():

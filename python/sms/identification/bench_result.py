@@ -27,12 +27,11 @@ def sentences(result: BenchResult) -> list[str]:
         said.append("Identified: " + "; ".join(told_words(t) for t in known) + ".")
     if unsure := [t for t in asked if not t.told]:
         said.append(
-            "Fitted but not told (no better known than before, or half of its value and more in doubt, or at a bound): "
-            + "; ".join(told_words(t) for t in unsure)
-            + "."
+            "Fitted but not identifiable (no more accurate than declared, uncertain by half of its value or more, "
+            "or at a bound): " + "; ".join(told_words(t) for t in unsure) + "."
         )
     said += [
-        f"Not told by these records: {words(n)}; {why}."
+        f"Not identifiable from these records: {words(n)}; {why}."
         for n, why in fit.left_out
         if n in result.asked
     ]

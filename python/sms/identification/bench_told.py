@@ -32,7 +32,7 @@ WHY_UNFELT: Mapping[str, str] = {
     "stribeck_acceleration_factor": "stiction equals Coulomb friction at the start",
     "stiction_force": "without an acceleration factor there is no Stribeck term",
 }
-"""Why no record of this kind feels a parameter at its start."""
+"""Why no record of this kind is sensitive to a parameter at its start."""
 
 
 def size_of(rig: Rig, name: str, value: float) -> float:
@@ -71,7 +71,7 @@ def choose(
     beside[:] = [f for f in beside if felt[f.name]]
     kept = [n for n in names if felt[n]]
     left_out = [
-        (n, WHY_UNFELT.get(n, "these records do not feel it")) for n in names if not felt[n]
+        (n, WHY_UNFELT.get(n, "these records are insensitive to it")) for n in names if not felt[n]
     ]
     column = {n: jacobian[:, i] for i, n in enumerate(every)}
     while kept:
@@ -100,15 +100,17 @@ def _expected(columns: Sequence[Array], beside: Sequence[Free], own: int) -> tup
 
 
 def _why(rig: Rig, name: str, error: float, correlation: Array, order: Sequence[str]) -> str:
-    """Why a parameter that is felt is not told."""
+    """Why a parameter that the records are sensitive to is not identifiable."""
     unit = PARAMETERS[name].unit
     other = np.abs(correlation).copy()
     other[list(order).index(name)] = 0.0
     twin = order[int(np.argmax(other))]
     known = rig.declared(name).uncertainty
-    before = f", known to {format_quantity(known, unit, name)} already" if known > 0.0 else ""
-    repeats = f"; it repeats {words(twin)}" if other.max() > 0.9 else ""
-    return f"these records hold it within {format_quantity(1.96 * error, unit, name)} only{before}{repeats}"
+    before = (
+        f", declared within {format_quantity(known, unit, name)} already" if known > 0.0 else ""
+    )
+    repeats = f"; it is correlated with {words(twin)}" if other.max() > 0.9 else ""
+    return f"these records determine it only within {format_quantity(1.96 * error, unit, name)}{before}{repeats}"
 
 
 def untold_of(found: Estimate, names: Sequence[str], rig: Rig) -> tuple[str, str] | None:

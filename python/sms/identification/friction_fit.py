@@ -63,7 +63,7 @@ _USUAL = {
     "viscous_friction_deceleration_change": 50.0,
     "exponential_friction_force": 2.0,
 }
-"""Size of a parameter whose default is zero, to judge whether its effect could be felt; SI."""
+"""Size of a parameter whose default is zero, to judge whether the records are sensitive to it; SI."""
 
 
 @dataclass(frozen=True)
@@ -203,11 +203,11 @@ def _choose(
     names, left_out = showable(problem, used, falling, (*dry, height, width, *rest))
     if height in names and width in names:
         return names, left_out, falling
-    unfelt = any(n in (height, width) and "feel" in why for n, why in left_out)
+    unfelt = any(n in (height, width) and "insensitive" in why for n, why in left_out)
     reason = (
-        "these motions do not feel it"
+        "these motions are insensitive to it"
         if unfelt
-        else "the fall from static to Coulomb friction cannot be told from what is fitted already"
+        else "the transition from static to Coulomb friction is not distinguishable from the other parameters"
     )
     names, left_out = showable(problem, used, plain, (*dry, *rest))
     return names, (*left_out, (height, reason), (width, reason)), plain
@@ -241,7 +241,7 @@ def showable(
     for name, column in zip(wanted, columns.T, strict=True):
         usual = abs(params[name]) or _USUAL.get(name, PARAMETERS[name].uncertainty or 1.0)
         if usual * rms_of(column) < FELT * spread:
-            left_out.append((name, "these motions do not feel it"))
+            left_out.append((name, "these motions are insensitive to it"))
             continue
         trial = np.column_stack((basis, column / np.linalg.norm(column)))
         if collinearity(trial) > COLLINEAR:

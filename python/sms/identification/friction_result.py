@@ -30,11 +30,13 @@ def sentences(result: FrictionResult) -> list[str]:
     unsure = [t for t in best.told if not t.shown]
     if unsure:
         said.append(
-            "Fitted but not shown (so far from zero by chance as well, or at a bound): "
+            "Fitted but not significant (consistent with zero, or at a bound): "
             + "; ".join(told_words(t) for t in unsure)
             + "."
         )
-    said += [f"Not shown by this excitation: {words(n)}; {why}." for n, why in best.left_out]
+    said += [
+        f"Not identifiable from this excitation: {words(n)}; {why}." for n, why in best.left_out
+    ]
     said += list(best.found.warnings)
     if len(best.found.free) and all(len(t.runs) < 2 for t in best.told):
         said.append("One run only: how far friction differs from run to run cannot be seen.")

@@ -136,8 +136,8 @@ def identify_spool(
         position = fit_position(rig, measured, huber)
     else:
         notes.append(
-            "the spool's position was not measured: the static law, millimetres over volts, cannot be told, since the "
-            "valve's tables state the flow over volts; what pressures still show is the centre, the dead band and "
+            "the spool's position was not measured: the static law, millimetres over volts, is not identifiable, "
+            "since the valve's tables state the flow over volts; from pressures the centre and the dead band are, and "
             "the lag"
         )
     pressure = None
@@ -149,7 +149,7 @@ def identify_spool(
     else:
         notes.append(
             "no pressures were measured: the command at which air begins to flow, and so the dead band and the "
-            "pneumatic centre, cannot be told; the middle above is that of the spool's travel"
+            "pneumatic centre, are not identifiable; the centre above is that of the spool's travel"
         )
     return SpoolResult(rig.title, path.name, position, pressure, findings, tuple(notes))
 
@@ -169,10 +169,10 @@ def fit_position(rig: Rig, records: Sequence[Record], huber: float = 0.0) -> Pos
     if not moving:
         raise InputError(
             f"{rig.path}: the spool moves less than {1e3 * MOVES:g} mm in every record to identify with: no law can be "
-            "told from one place; record commands from 0 to 10 V"
+            "identified from one position; record commands from 0 to 10 V"
         )
     notes = [
-        f"record {r.name}: the spool does not move; it tells one point of the static law only"
+        f"record {r.name}: the spool does not move; it gives one point of the static law only"
         for r in identify
         if r not in moving
     ]
@@ -209,9 +209,8 @@ def _excited(
         return [], [(n, slow) for n in DYNAMIC]
     if period < SPEED_OF_SAMPLING * step:
         notes.append(
-            f"sampled every {1e3 * step:.3g} ms, the spool's period being {1e3 * period:.3g} ms: its lag rests on "
-            "how the command ran between samples, and a dead time cannot be told from it; the static law is not "
-            "touched by that"
+            f"sampled every {1e3 * step:.3g} ms, the spool's period being {1e3 * period:.3g} ms: its lag depends on "
+            "the command between samples, and is not distinguishable from a dead time; the static law is not affected"
         )
         return list(DYNAMIC[:1]), [
             (n, "too few samples in a period of the spool") for n in DYNAMIC[1:]

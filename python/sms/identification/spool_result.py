@@ -50,15 +50,15 @@ def position_sentences(fit: PositionFit) -> list[str]:
     centre, error = best.centre
     if np.isfinite(centre):
         said.append(
-            f"the spool stands in the middle at {format_estimate(centre, error, 'V', 'valve_centre')}."
+            f"the spool is at mid-travel at {format_estimate(centre, error, 'V', 'valve_centre')}."
         )
     else:
         said.append("the middle of the travel was not passed: no command at which it is zero.")
     lag = [t for t in best.told if t.name in DYNAMIC]
     if known := [t for t in lag if t.told]:
         said.append("it follows with " + ", ".join(told_words(t) for t in known) + ".")
-    said += [f"fitted but not told: {told_words(t)}." for t in lag if not t.told]
-    said += [f"not told by these records: {words(n)}; {why}." for n, why in fit.left_out]
+    said += [f"fitted but not identifiable: {told_words(t)}." for t in lag if not t.told]
+    said += [f"not identifiable from these records: {words(n)}; {why}." for n, why in fit.left_out]
     if not any(t.name == "spool_limit" for t in best.told):
         said.append("the end of the travel was not reached: spool limit stays as declared.")
     return [*said, *(f"{note}." for note in fit.notes), *(f"{w}." for w in best.found.warnings)]

@@ -34,9 +34,9 @@ def bench_parts(result: BenchResult) -> tuple[list[str], Views]:
     parts = [
         section(
             "parameters", "Parameters", _parameters(fit.wanted, result.asked),
-            "One standard error each: by the residuals' own colour, and by the scatter of the records where that is "
-            "larger. Known within: half width as declared. Not told: no better known than before, or half of its value "
-            "and more in doubt.",
+            "One standard error each: from the residuals with their autocorrelation, and from the scatter of the "
+            "records where that is larger. Known within: half width as declared. Not identifiable: no more accurate "
+            "than declared, or uncertain by half of its value or more.",
         ),
         figure(
             "fits", "Measured and predicted", figures["fits"],
@@ -70,7 +70,9 @@ def bench_parts(result: BenchResult) -> tuple[list[str], Views]:
             f"<li><b>{esc(words(name))}</b>: {esc(why)}</li>" for name, why in fit.left_out
         )
         parts.append(
-            section("not-told", "What these records cannot tell", f"<ul class='said'>{items}</ul>")
+            section(
+                "not-told", "Not identifiable from these records", f"<ul class='said'>{items}</ul>"
+            )
         )
     return parts, figures
 
@@ -145,7 +147,7 @@ def _parameters(told: tuple[Told, ...], asked: tuple[str, ...] | None) -> str:
         rows.append(cells)
     headers = ["parameter", "value ± standard error", "declared", "known within"]
     if asked is not None:
-        headers += ["scatter of records", "told"]
+        headers += ["scatter of records", "identifiable"]
     return table("", headers, rows)
 
 

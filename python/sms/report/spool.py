@@ -143,4 +143,4 @@ def _table(fit: LawFit) -> str:
                 esc(format_quantity(t.before, unit, t.name)), "yes" if t.told else "no",
             ]
         )  # fmt: skip
-    return table("", ("parameter", "value ± standard error", "declared", "told"), rows)
+    return table("", ("parameter", "value ± standard error", "declared", "identifiable"), rows)

@@ -22,10 +22,10 @@ PARTS_IN_WORDS = {
     "proportional_gain": "proportional gain",
     "integral_gain": "integral gain",
     "derivative_gain": "derivative gain",
-    "dead_band_step": "step over the dead band",
-    "position_gain": "gain of position",
-    "velocity_gain": "gain of velocity",
-    "acceleration_gain": "gain of acceleration",
+    "dead_band_step": "dead-band compensation",
+    "position_gain": "position gain",
+    "velocity_gain": "velocity gain",
+    "acceleration_gain": "acceleration gain",
 }
 
 
@@ -41,11 +41,10 @@ class Effect:
     block: str
     title: str
     cause: str
-    signature: str
+    """The physics, and how it shows in the records."""
     needs: tuple[str, ...]
     plausible: tuple[float, float]
     separated_by: str
-    confusable: tuple[str, ...] = ()
     of_sensor: bool = False
     """`signal` names a measured signal, without which there is nothing to test."""
     step: float | None = None
@@ -78,10 +77,10 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
     of_sensor = "signals" in entry
     for place in entry.get("signals", entry.get("parts", [None])):
         said = _said(place)
-        text = {key: entry[key].format(signal=said, part=said) for key in ("title", "cause")}
-        text |= {
-            key: entry[key].format(signal=said, part=said) for key in ("signature", "separated_by")
-        }
+        title, cause, signature, separated_by = (
+            entry[key].format(signal=said, part=said)
+            for key in ("title", "cause", "signature", "separated_by")
+        )
         yield Effect(
             id=entry["id"],
             signal=place,
@@ -90,15 +89,16 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
                 _of_leg(p.format(signal=place, part=place)) for p in entry["parameters"]
             ),
             block=entry["block"],
+            title=title,
+            cause=f"{cause} In the records: {signature}.",
+            separated_by=separated_by,
             needs=tuple(entry["needs"]),
             plausible=_plausible(entry["plausible"], place),
-            confusable=tuple(entry.get("confusable", ())),
             of_sensor=of_sensor,
             step=entry.get("step"),
             absolute=entry.get("absolute", False),
             chambers=entry.get("chambers"),
             controller=entry.get("controller"),
-            **text,
         )
 
 

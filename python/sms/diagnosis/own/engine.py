@@ -206,7 +206,6 @@ def _effect_of(model: Model, effect: Effect) -> catalogue.Effect:
         block=effect.equation or "model",
         title=effect.title,
         cause=effect.cause,
-        signature="",
         needs=(),
         plausible=(low - p.value, high - p.value) if shifted else (low, high),
         separated_by=effect.separated_by,
