@@ -880,7 +880,7 @@ class Params:
     @property
     def heat_transfer_coefficient(self) -> float:
         """
-        heat from wall to air per area and degree, h [W/(m^2 K)]; assumed, of the order of forced convection in air; felt by the full energy equation only
+        heat from wall to air per area and degree, h [W/(m^2 K)]; assumed, of the order of forced convection in air; enters the full energy equation only
         """
     @heat_transfer_coefficient.setter
     def heat_transfer_coefficient(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1728,7 +1728,7 @@ class Params:
     @property
     def spool_position(self) -> float:
         """
-        where the spool is held during a flow test, from its pneumatic centre; felt by the classic law only [m]; assumed: set by the test
+        where the spool is held during a flow test, from its pneumatic centre; enters the classic law only [m]; assumed: set by the test
         """
     @spool_position.setter
     def spool_position(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1856,7 +1856,7 @@ class Params:
     @property
     def tank_wall_area(self) -> float:
         """
-        inner surface of the tank; felt by the full energy equation only [m^2]; assumed, a cylinder of 5 l, twice as long as wide
+        inner surface of the tank; enters the full energy equation only [m^2]; assumed, a cylinder of 5 l, twice as long as wide
         """
     @tank_wall_area.setter
     def tank_wall_area(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:

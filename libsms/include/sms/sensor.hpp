@@ -8,7 +8,7 @@
 // Lag. A sensor follows by a first-order lag, x' = (truth - x) / lag, stepped exactly for a truth that runs straight from
 // one look to the next. Where the lag is shorter than such a step the sensor is read as it was that long ago, to first
 // order, y - lag y': the limit of the same. A delay by the same time differs from a lag by half its square times the
-// acceleration; that is how a slow sensor and a late clock are told apart.
+// acceleration; that distinguishes a slow sensor from a late clock.
 //
 // Clock. A logger whose clock is late by tau writes at t what was there at t - tau: whole samples by the index, the rest to
 // first order. Only the record has it; a controller reads its own converter.

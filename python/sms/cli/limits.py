@@ -32,12 +32,11 @@ def limits(
         "limits"
     ),
 ) -> None:
-    """How small an effect may be before an experiment no longer shows it.
+    """Detection limits: the smallest size of each effect that an experiment shows.
 
-    For each effect of the catalogue and each experiment of the menu from which the diagnosis proposes, and for each
-    record that the rig file lists: the size that one such run shows by three standard errors, with the noise as
-    declared and everything that is declared as uncertain free to move. "-" is an effect that it cannot show; the page
-    says why.
+    For each effect of the catalogue, each experiment that the diagnosis may propose, and each record that the rig file
+    lists: the size that equals three standard errors of its estimate from one such run, with the noise as declared and
+    everything uncertain free within its declaration. "-" is an effect that it cannot show; the page says why.
     """
     from sms.diagnosis.design.detection_limits import as_csv, detection_limits  # noqa: PLC0415
     from sms.io import write_text_atomically  # noqa: PLC0415

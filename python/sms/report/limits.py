@@ -44,7 +44,7 @@ def limits_html(found: Limits) -> str:
     )
     listed = "".join(f"<li>{esc(title)}</li>" for title in found.experiments)
     body = (
-        f"<main><h1>What an experiment can show: {esc(found.title)}</h1>"
+        f"<main><h1>Detection limits: {esc(found.title)}</h1>"
         + section(
             "limits",
             "Detection limits",
