@@ -2,10 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "sms/sensor.hpp"
@@ -59,39 +57,13 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
 }
 
 // Which way a signal had gone last at a sample, by more than `least`: 1 up, -1 down, 0 if it never did.
-inline double moved_last(const Eigen::VectorXd& signal, int sample, double least) {
-  for (int k = sample - 1; k >= 0; --k) {
-    const double gone = signal[sample] - signal[k];
-    if (std::abs(gone) > least) {
-      return gone > 0.0 ? 1.0 : -1.0;
-    }
-  }
-  return 0.0;
-}
+double moved_last(const Eigen::VectorXd& signal, int sample, double least);
 
 // Value at the first of some samples, by a parabola through them; its slope per second behind it.
-inline Eigen::Vector2d beginning(const Eigen::VectorXd& signal, int first, int samples, double step) {
-  const int count = std::min<int>(samples, static_cast<int>(signal.size()) - first);
-  Eigen::MatrixX3d powers(count, 3);
-  for (int k = 0; k < count; ++k) {
-    const double t = k * step;
-    powers.row(k) << 1.0, t, t * t;
-  }
-  const Eigen::Vector3d fitted = powers.colPivHouseholderQr().solve(signal.segment(first, count));
-  return fitted.head<2>();
-}
+Eigen::Vector2d beginning(const Eigen::VectorXd& signal, int first, int samples, double step);
 
 // std::invalid_argument for a signal of another length than the command, or with a value that is not finite.
-inline void check_signal(const std::string& record, const char* name, const Eigen::VectorXd& signal,
-                         Eigen::Index samples) {
-  if (signal.size() != samples) {
-    throw std::invalid_argument(record + ": " + name + " has " + std::to_string(signal.size()) +
-                                " samples, command has " + std::to_string(samples));
-  }
-  if (!signal.allFinite()) {
-    throw std::invalid_argument(record + ": " + name + " holds a value that is not a finite number");
-  }
-}
+void check_signal(const std::string& record, const char* name, const Eigen::VectorXd& signal, Eigen::Index samples);
 
 }  // namespace detail
 
