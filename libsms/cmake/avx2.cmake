@@ -1,4 +1,4 @@
-# Derivatives are carried four or eight at a time (ceres::Jet): with AVX2 a fit takes a third of the time. What is
+# Derivatives are carried four at a time (estimation/jet.hpp): with AVX2 a fit takes a third of the time. What is
 # compiled where it is used, as the Python package is by pip, has it where the machine does; -DSMS_AVX2=OFF is for a
 # package that goes to others. Alignment stays that of the system's libraries, which were compiled without.
 set(SMS_AVX2 AUTO CACHE STRING "AVX2 on the desk, in double precision: ON, OFF, or AUTO (in the Python package, where it runs)")

@@ -1,10 +1,9 @@
-// Exact derivatives of a model that is written over the scalar: it runs in ceres::Jet, a few parameters at a time.
+// Exact derivatives of a model that is written over the scalar: it runs in Jet (jet.hpp), a few parameters at a time.
 #pragma once
-
-#include <ceres/jet.h>
 
 #include <algorithm>
 
+#include "estimation/jet.hpp"
 #include "estimation/problem.hpp"
 
 namespace sms {
@@ -16,8 +15,6 @@ namespace estimation {
 template <int kWidth = 4, typename Model, template <typename> class Machine>
 void evaluate_with_jets(const Model& model, int rows, const Machine<double>& params, const std::vector<int>& free,
                         Eigen::VectorXd* residual, RowMatrix* jacobian) {
-  using Jet = ceres::Jet<double, kWidth>;
-
   residual->resize(rows);
   if (jacobian == nullptr) {
     model(params, residual->data());
@@ -25,17 +22,17 @@ void evaluate_with_jets(const Model& model, int rows, const Machine<double>& par
   }
   const int columns = static_cast<int>(free.size());
   jacobian->resize(rows, columns);
-  std::vector<Jet> jets(static_cast<std::size_t>(rows));
+  std::vector<Jet<kWidth>> jets(static_cast<std::size_t>(rows));
   for (int first = 0; first < std::max(columns, 1); first += kWidth) {
     const int width = std::min(kWidth, columns - first);
-    Machine<Jet> seeded = cast<Jet>(params);
+    Machine<Jet<kWidth>> seeded = cast<Jet<kWidth>>(params);
     for (int k = 0; k < width; ++k) {
       const int column = first + k;
       param(seeded, free[static_cast<std::size_t>(column)]).v[k] = 1.0;
     }
     model(seeded, jets.data());
     for (int row = 0; row < rows; ++row) {
-      const Jet& jet = jets[static_cast<std::size_t>(row)];
+      const Jet<kWidth>& jet = jets[static_cast<std::size_t>(row)];
       (*residual)(row) = jet.a;
       for (int k = 0; k < width; ++k) {
         (*jacobian)(row, first + k) = jet.v[k];

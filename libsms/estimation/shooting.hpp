@@ -35,10 +35,9 @@
 // A plant's problem is compiled once, in the plant's own file (shooting_search.hpp).
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <vector>
 
+#include "estimation/jet.hpp"
 #include "estimation/problem.hpp"
 
 namespace sms {
@@ -64,7 +63,7 @@ struct WindowOptions {
 };
 
 // Derivatives against parameters, four at a time: one AVX register.
-using ParameterJet = ceres::Jet<double, 4>;
+using ParameterJet = Jet<4>;
 
 template <typename Plant>
 class ShootingProblem : public ProblemOf<typename Plant::template Machine<double>> {

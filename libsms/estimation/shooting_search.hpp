@@ -158,7 +158,7 @@ Window ShootingProblem<Plant>::begun(const Machine<double>& params, std::size_t 
 template <typename Plant>
 template <int kFelt>
 void ShootingProblem<Plant>::find_slopes_of(const Machine<double>& params, const Window& w, Shot* shot) const {
-  using StartJet = ceres::Jet<double, (kFelt + 3) / 4 * 4>;  // whole AVX registers
+  using StartJet = Jet<(kFelt + 3) / 4 * 4>;  // whole AVX registers
   std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
   StartJet z[kStart];
   for (int k = 0; k < kStart; ++k) {
@@ -170,7 +170,7 @@ void ShootingProblem<Plant>::find_slopes_of(const Machine<double>& params, const
   for (int row = 0; row < w.rows; ++row) {
     const StartJet& jet = jets[static_cast<std::size_t>(row)];
     shot->residual[row] = jet.a;
-    shot->slopes.row(row).template head<kFelt>() = jet.v.template head<kFelt>().transpose();
+    shot->slopes.row(row).template head<kFelt>() = Eigen::Map<const Eigen::Matrix<double, 1, kFelt>>(jet.v);
   }
 }
 
@@ -257,7 +257,7 @@ Eigen::MatrixXd ShootingProblem<Plant>::differentiate(const Machine<double>& par
     }
     plant_.simulate(seeded, w, start, jets.data());
     for (int row = 0; row < w.rows; ++row) {
-      columns.row(row) = jets[static_cast<std::size_t>(row)].v.transpose();
+      columns.row(row) = Eigen::Map<const Eigen::Matrix<double, 1, kWidth>>(jets[static_cast<std::size_t>(row)].v);
     }
     const Eigen::MatrixXd here = columns.leftCols(width);
     jacobian->block(w.row, first, w.rows, width) = projection.off(here);
@@ -287,7 +287,7 @@ void ShootingProblem<Plant>::differentiate_hidden(const Machine<double>& params,
     }
     plant_.simulate(plain, w, start, jets.data(), push.data(), knots);
     for (int row = 0; row < w.rows; ++row) {
-      columns.row(row) = jets[static_cast<std::size_t>(row)].v.transpose();
+      columns.row(row) = Eigen::Map<const Eigen::Matrix<double, 1, kWidth>>(jets[static_cast<std::size_t>(row)].v);
     }
     out->block(w.row, first, w.rows, width) = projection.off(columns.leftCols(width));
   }

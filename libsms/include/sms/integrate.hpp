@@ -5,7 +5,7 @@
 //   x(t + h) = x + h/6 (k1 + 2 k2 + 2 k3 + k4)
 //
 // The classical Runge-Kutta method of fourth order. It does the same work in every step, which is what firmware in the
-// loop needs, and it is a smooth function of its input, which is what a fit needs: in ceres::Jet it carries the exact
+// loop needs, and it is a smooth function of its input, which is what a fit needs: in a Jet it carries the exact
 // derivatives of the discrete solution. Explicit, so a step has to stay below 2.7 times the fastest time constant: 1 ms
 // does for the spool, 0.2 ms for a chamber that is nearly closed and nearly empty or for contact at an end. For a step
 // that finds its own size see integrate_adaptive.hpp.

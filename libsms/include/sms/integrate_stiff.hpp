@@ -10,7 +10,7 @@
 // A has the slope of friction and contact for (x, v), that of the film for its own speed and the piston's, a chamber's flow
 // over its pressure difference for each pressure, and in a tank the exchange of its air for the temperature.
 //
-// Two evaluations a step, and in ceres::Jet the exact derivatives of the discrete solution: what is held against records
+// Two evaluations a step, and in Jets the exact derivatives of the discrete solution: what is held against records
 // window by window takes these steps.
 #pragma once
 

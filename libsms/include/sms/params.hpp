@@ -1,5 +1,5 @@
 // The parameters of params.def as a C++ struct over the scalar: float on the controller, double in simulation,
-// ceres::Jet in a fit. Params<double> and Params<float> are the C structs of sms.h with defaults, so that firmware and
+// a Jet in a fit. Params<double> and Params<float> are the C structs of sms.h with defaults, so that firmware and
 // desk share one layout and no call copies anything.
 //
 // Every parameter is an S, one after the other, behind what the C structs open with (abi and size): what is done to all parameters alike is a loop over them (values_of), which

@@ -1,8 +1,9 @@
 // What the templates need to know of their scalar, and the fixed-size vectors they are written in.
 //
-// S is float on the controller, double in simulation, ceres::Jet in a fit. A Jet is a number `a` with derivatives `v`;
-// ValueOf<Jet<double, N>> is double, ValueOf of a plain number is itself. An iterated solution runs in ValueOf<S> and
-// ends with one Newton step in S: by the implicit function theorem that step carries the exact first derivatives.
+// S is float on the controller, double in simulation, a Jet in a fit: a number `a` with derivatives `v`
+// (estimation/jet.hpp). ValueOf<Jet<N>> is double, ValueOf of a plain number is itself. An iterated solution runs in
+// ValueOf<S> and ends with one Newton step in S: by the implicit function theorem that step carries the exact first
+// derivatives.
 #pragma once
 
 #include <Eigen/Core>
