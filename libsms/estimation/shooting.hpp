@@ -62,6 +62,24 @@ struct WindowOptions {
   double least_share = 1e-3;
 };
 
+// A window at an initial state.
+struct Shot {
+  Eigen::VectorXd start;
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd slopes;   // de/dz
+  bool has_slopes = false;  // of this state, and not of one the search has left
+};
+
+// One window at given parameters, as a search for its initial state asks for it; the search is compiled once for all
+// plants.
+class WindowSimulation {
+ public:
+  virtual ~WindowSimulation() = default;
+  virtual void find_residual(const Eigen::VectorXd& start, Eigen::VectorXd* residual) const = 0;
+  // Residual and slopes at the shot's state.
+  virtual void find_slopes(Shot* shot) const = 0;
+};
+
 // Derivatives against parameters, four at a time: one AVX register.
 using ParameterJet = Jet<4>;
 
@@ -99,10 +117,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
  private:
   static constexpr int kStart = Plant::kStart;
   static constexpr int kWidth = ParameterJet::DIMENSION;
-  struct Shot;  // a window at its best initial state
-
-  template <typename Work>
-  void in_parallel(const Work& work) const;
+  class Simulated;  // a window of this plant
 
   static Eigen::VectorXd start_scales();
 
@@ -112,16 +127,8 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // Window k with where its search begins.
   Window begun(const Machine<double>& params, std::size_t k) const;
 
-  // Simulates with derivatives against the first kFelt numbers of the initial state; the others leave no trace.
-  template <int kFelt>
-  void find_slopes_of(const Machine<double>& params, const Window& w, Shot* shot) const;
-  void find_slopes(const Machine<double>& params, const Window& w, Shot* shot) const;
-
-  // A gain of chi-square that ends a search.
-  double enough(double cost) const { return options_.least_gain + options_.least_share * cost; }
-
-  // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
-  Shot shoot(const Machine<double>& params, const Window& w, int most_steps = 12) const;
+  // From where the window begins to its best initial state.
+  Shot shoot(const Machine<double>& params, const Window& w) const;
 
   // The better of two searches. One that begins where parameters far away have left it may end in a valley of its own,
   // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too.

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
-#include <thread>
+#include <functional>
 #include <utility>
 
 #include "estimation/shooting.hpp"
@@ -14,13 +13,18 @@
 namespace sms {
 namespace estimation {
 
-template <typename Plant>
-struct ShootingProblem<Plant>::Shot {
-  Eigen::VectorXd start;
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd slopes;   // de/dz
-  bool has_slopes = false;  // of this state, and not of one the search has left
-};
+// Of the windows of a problem, by so many threads.
+void in_parallel(int threads, std::size_t windows, const std::function<void(std::size_t)>& work);
+
+// Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
+Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
+           const WindowOptions& options, int most_steps = 12);
+
+// Derivatives of the rows, a direction a column.
+void columns_of(const std::vector<ParameterJet>& jets, Eigen::MatrixXd* columns);
+
+// Whether the simulation came to the window's end.
+bool is_finite(const Shot& shot);
 
 // ---- all windows --------------------------------------------------------------------------------------------------
 
@@ -44,38 +48,19 @@ ShootingProblem<Plant>::ShootingProblem(Plant plant, const WindowOptions& option
 }
 
 template <typename Plant>
-template <typename Work>
-void ShootingProblem<Plant>::in_parallel(const Work& work) const {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t k = next++; k < windows_.size(); k = next++) {
-      work(k);
-    }
-  };
-  std::vector<std::thread> others;
-  for (int i = 1; i < options_.threads; ++i) {
-    others.emplace_back(run);
-  }
-  run();
-  for (std::thread& thread : others) {
-    thread.join();
-  }
-}
-
-template <typename Plant>
 void ShootingProblem<Plant>::evaluate(const Machine<double>& params, const std::vector<int>& free,
                                       Eigen::VectorXd* residual, RowMatrix* jacobian) const {
   residual->resize(rows_);
   if (jacobian != nullptr) {
     jacobian->resize(rows_, static_cast<Eigen::Index>(free.size()));
   }
-  in_parallel([&](std::size_t k) {
+  in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     const Window w = begun(params, k);
     Shot shot = jacobian != nullptr ? search(params, w) : shoot(params, w);
-    residual->segment(w.row, w.rows) = shot.residual;
+    std::copy_n(shot.residual.data(), w.rows, residual->data() + w.row);
     found_[k] = place_of(shot, w);
     if (jacobian != nullptr) {
-      find_slopes(params, w, &shot);
+      Simulated(*this, params, w).find_slopes(&shot);
       follow_[k] = differentiate(params, free, w, shot, jacobian);
       windows_[k].start = found_[k];
     }
@@ -90,8 +75,9 @@ void ShootingProblem<Plant>::evaluate(const Machine<double>& params, const std::
 template <typename Plant>
 Eigen::VectorXd ShootingProblem<Plant>::errors(const Machine<double>& params) const {
   Eigen::VectorXd out(rows_);
-  in_parallel([&](std::size_t k) {
-    out.segment(windows_[k].row, windows_[k].rows) = shoot(params, begun(params, k)).residual;
+  in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
+    const Shot shot = shoot(params, begun(params, k));
+    std::copy_n(shot.residual.data(), windows_[k].rows, out.data() + windows_[k].row);
   });
   return out;
 }
@@ -99,7 +85,7 @@ Eigen::VectorXd ShootingProblem<Plant>::errors(const Machine<double>& params) co
 template <typename Plant>
 void ShootingProblem<Plant>::settle(const Machine<double>& params) {
   followed_.clear();
-  in_parallel([&](std::size_t k) {
+  in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     const Window& w = windows_[k];
     windows_[k].start = found_[k] = place_of(search(params, w), w);
   });
@@ -109,9 +95,9 @@ void ShootingProblem<Plant>::settle(const Machine<double>& params) {
 template <typename Plant>
 RowMatrix ShootingProblem<Plant>::hidden(const Machine<double>& params, int knots) const {
   RowMatrix out(rows_, Plant::kHidden * knots);
-  in_parallel([&](std::size_t k) {
+  in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     Shot shot = shoot(params, begun(params, k));
-    find_slopes(params, windows_[k], &shot);
+    Simulated(*this, params, windows_[k]).find_slopes(&shot);
     differentiate_hidden(params, knots, windows_[k], shot, &out);
   });
   return out;
@@ -130,7 +116,7 @@ Eigen::VectorXd ShootingProblem<Plant>::start_scales() {
 
 template <typename Plant>
 Eigen::VectorXd ShootingProblem<Plant>::place_of(const Shot& shot, const Window& w) const {
-  return shot.start.allFinite() && shot.residual.allFinite() ? shot.start : plant_.guess(w.record, w.first);
+  return is_finite(shot) ? shot.start : plant_.guess(w.record, w.first);
 }
 
 template <typename Plant>
@@ -156,82 +142,66 @@ Window ShootingProblem<Plant>::begun(const Machine<double>& params, std::size_t 
 }
 
 template <typename Plant>
-template <int kFelt>
-void ShootingProblem<Plant>::find_slopes_of(const Machine<double>& params, const Window& w, Shot* shot) const {
-  using StartJet = Jet<(kFelt + 3) / 4 * 4>;  // whole AVX registers
-  std::vector<StartJet> jets(static_cast<std::size_t>(w.rows));
-  StartJet z[kStart];
-  for (int k = 0; k < kStart; ++k) {
-    z[k] = k < kFelt ? StartJet(shot->start[k], k) : StartJet(shot->start[k]);
-  }
-  plant_.simulate(cast<StartJet>(params), w, z, jets.data());
-  shot->residual.resize(w.rows);
-  shot->slopes.setZero(w.rows, kStart);
-  for (int row = 0; row < w.rows; ++row) {
-    const StartJet& jet = jets[static_cast<std::size_t>(row)];
-    shot->residual[row] = jet.a;
-    shot->slopes.row(row).template head<kFelt>() = Eigen::Map<const Eigen::Matrix<double, 1, kFelt>>(jet.v);
-  }
-}
+class ShootingProblem<Plant>::Simulated : public WindowSimulation {
+ public:
+  Simulated(const ShootingProblem& problem, const Machine<double>& params, const Window& window)
+      : plant_(problem.plant_), params_(params), window_(window) {}
 
-template <typename Plant>
-void ShootingProblem<Plant>::find_slopes(const Machine<double>& params, const Window& w, Shot* shot) const {
-  if (shot->has_slopes) {
-    return;
+  void find_residual(const Eigen::VectorXd& start, Eigen::VectorXd* residual) const override {
+    plant_.simulate(params_, window_, start.data(), residual->data());
   }
-  if (plant_.feels_all(params, w)) {
-    this->template find_slopes_of<kStart>(params, w, shot);
-  } else {
-    this->template find_slopes_of<Plant::kFelt>(params, w, shot);
-  }
-  shot->has_slopes = true;
-}
 
-// A state is tried in plain numbers, which are ten times cheaper; slopes are worked out where the search goes on from.
-template <typename Plant>
-typename ShootingProblem<Plant>::Shot ShootingProblem<Plant>::shoot(const Machine<double>& params, const Window& w,
-                                                                    int most_steps) const {
-  Shot shot;
-  shot.start = w.start;
-  Eigen::VectorXd tried_residual(w.rows);
-  const Eigen::VectorXd scale = start_scales();
-  double damping = 1e-6;
-  for (int k = 0; k < most_steps; ++k) {
-    find_slopes(params, w, &shot);
-    const StartStep step = start_step(shot.slopes, shot.residual, scale, damping);
-    const double cost = shot.residual.squaredNorm();
-    if (!(step.promised > enough(cost))) {
-      break;
+  void find_slopes(Shot* shot) const override {
+    if (shot->has_slopes) {
+      return;
     }
-    const Eigen::VectorXd tried = shot.start + step.move;
-    plant_.simulate(params, w, tried.data(), tried_residual.data());
-    const double gain = cost - tried_residual.squaredNorm();
-    if (gain > 0.0) {
-      shot.start = tried;
-      shot.residual.swap(tried_residual);
-      shot.has_slopes = false;
-      damping = std::max(0.1 * damping, 1e-9);
-      if (gain < enough(cost)) {
-        break;
-      }
-    } else if (damping > 1e3) {
-      break;
+    if (plant_.feels_all(params_, window_)) {
+      find_slopes_of<kStart>(shot);
     } else {
-      damping = std::max(100.0 * damping, 1e-2);
+      find_slopes_of<Plant::kFelt>(shot);
+    }
+    shot->has_slopes = true;
+  }
+
+ private:
+  // Simulates with derivatives against the first kFelt numbers of the initial state; the others leave no trace.
+  template <int kFelt>
+  void find_slopes_of(Shot* shot) const {
+    using StartJet = Jet<(kFelt + 3) / 4 * 4>;  // whole AVX registers
+    std::vector<StartJet> jets(static_cast<std::size_t>(window_.rows));
+    StartJet z[kStart];
+    for (int k = 0; k < kStart; ++k) {
+      z[k] = k < kFelt ? StartJet(shot->start[k], k) : StartJet(shot->start[k]);
+    }
+    plant_.simulate(cast<StartJet>(params_), window_, z, jets.data());
+    shot->residual.resize(window_.rows);
+    shot->slopes.setZero(window_.rows, kStart);
+    for (int row = 0; row < window_.rows; ++row) {
+      const StartJet& jet = jets[static_cast<std::size_t>(row)];
+      shot->residual[row] = jet.a;
+      for (int k = 0; k < kFelt; ++k) {
+        shot->slopes(row, k) = jet.v[k];
+      }
     }
   }
-  return shot;
+
+  const Plant& plant_;
+  const Machine<double>& params_;
+  const Window& window_;
+};
+
+template <typename Plant>
+Shot ShootingProblem<Plant>::shoot(const Machine<double>& params, const Window& w) const {
+  return estimation::shoot(Simulated(*this, params, w), w.start, start_scales(), options_);
 }
 
 template <typename Plant>
-typename ShootingProblem<Plant>::Shot ShootingProblem<Plant>::search(const Machine<double>& params,
-                                                                     const Window& w) const {
+Shot ShootingProblem<Plant>::search(const Machine<double>& params, const Window& w) const {
   Shot shot = shoot(params, w);
   if (shot.residual.squaredNorm() > 4.0 * w.rows) {
-    Window anew = w;
-    anew.start = plant_.guess(w.record, w.first);
     constexpr int kMostSteps = 4;  // enough to see whether it leads elsewhere; the next search goes on from there
-    Shot other = shoot(params, anew, kMostSteps);
+    Shot other = estimation::shoot(Simulated(*this, params, w), plant_.guess(w.record, w.first), start_scales(),
+                                   options_, kMostSteps);
     return other.residual.squaredNorm() < shot.residual.squaredNorm() ? other : shot;
   }
   return shot;
@@ -256,12 +226,9 @@ Eigen::MatrixXd ShootingProblem<Plant>::differentiate(const Machine<double>& par
       param(seeded, free[static_cast<std::size_t>(first + k)]).v[k] = 1.0;
     }
     plant_.simulate(seeded, w, start, jets.data());
-    for (int row = 0; row < w.rows; ++row) {
-      columns.row(row) = Eigen::Map<const Eigen::Matrix<double, 1, kWidth>>(jets[static_cast<std::size_t>(row)].v);
-    }
-    const Eigen::MatrixXd here = columns.leftCols(width);
-    jacobian->block(w.row, first, w.rows, width) = projection.off(here);
-    moves.middleCols(first, width) = projection.move(here);
+    columns_of(jets, &columns);
+    projection.off(columns, width, w.row, first, jacobian);
+    projection.move(columns, width, first, &moves);
   }
   return moves;
 }
@@ -286,10 +253,8 @@ void ShootingProblem<Plant>::differentiate_hidden(const Machine<double>& params,
       push[static_cast<std::size_t>(first + k)].v[k] = 1.0;
     }
     plant_.simulate(plain, w, start, jets.data(), push.data(), knots);
-    for (int row = 0; row < w.rows; ++row) {
-      columns.row(row) = Eigen::Map<const Eigen::Matrix<double, 1, kWidth>>(jets[static_cast<std::size_t>(row)].v);
-    }
-    out->block(w.row, first, w.rows, width) = projection.off(columns.leftCols(width));
+    columns_of(jets, &columns);
+    projection.off(columns, width, w.row, first, out);
   }
 }
 

@@ -29,22 +29,27 @@ StartProjection::StartProjection(const Eigen::MatrixXd& slopes, const Eigen::Vec
   basis_ = scaled_.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), scaled_.rank());
 }
 
-Eigen::MatrixXd StartProjection::off(const Eigen::MatrixXd& columns) const {
-  return columns - basis_ * (basis_.transpose() * columns);
+void StartProjection::off(const Eigen::MatrixXd& columns, Eigen::Index width, Eigen::Index row, Eigen::Index column,
+                          RowMatrix* out) const {
+  const Eigen::MatrixXd here = columns.leftCols(width);
+  const Eigen::MatrixXd kept = here - basis_ * (basis_.transpose() * here);
+  out->block(row, column, here.rows(), width) = kept;
 }
 
-Eigen::MatrixXd StartProjection::move(const Eigen::MatrixXd& columns) const {
+void StartProjection::move(const Eigen::MatrixXd& columns, Eigen::Index width, Eigen::Index column,
+                           Eigen::MatrixXd* out) const {
+  const Eigen::MatrixXd here = columns.leftCols(width);
   const Eigen::Index rank = basis_.cols();
-  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(scale_.size(), columns.cols());
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(scale_.size(), width);
   z.topRows(rank) = -scaled_.matrixR()
                          .topLeftCorner(rank, rank)
                          .template triangularView<Eigen::Upper>()
-                         .solve(basis_.transpose() * columns);
+                         .solve(basis_.transpose() * here);
   z = scaled_.colsPermutation() * z;
   for (Eigen::Index k = 0; k < z.rows(); ++k) {
     z.row(k) *= scale_[k];
   }
-  return z;
+  out->middleCols(column, width) = z;
 }
 
 StartStep start_step(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,

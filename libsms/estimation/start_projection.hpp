@@ -3,6 +3,8 @@
 
 #include <Eigen/QR>
 
+#include "estimation/problem.hpp"
+
 namespace sms {
 namespace estimation {
 
@@ -11,11 +13,13 @@ class StartProjection {
  public:
   StartProjection(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& scale);
 
-  // What of `columns` no initial state makes: (I - Q Q') columns.
-  Eigen::MatrixXd off(const Eigen::MatrixXd& columns) const;
+  // What of the first `width` columns no initial state makes, (I - Q Q') columns; written to `out` from a row and a column
+  // of it on.
+  void off(const Eigen::MatrixXd& columns, Eigen::Index width, Eigen::Index row, Eigen::Index column,
+           RowMatrix* out) const;
 
-  // How the best state moves, when the errors change by `columns` at the state that was.
-  Eigen::MatrixXd move(const Eigen::MatrixXd& columns) const;
+  // How the best state moves, when the errors change by these columns at the state that was; likewise.
+  void move(const Eigen::MatrixXd& columns, Eigen::Index width, Eigen::Index column, Eigen::MatrixXd* out) const;
 
  private:
   Eigen::VectorXd scale_;

@@ -1,0 +1,73 @@
+#include "estimation/shooting_search.hpp"
+
+#include <atomic>
+#include <thread>
+
+namespace sms {
+namespace estimation {
+
+void in_parallel(int threads, std::size_t windows, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  const auto run = [&] {
+    for (std::size_t k = next++; k < windows; k = next++) {
+      work(k);
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < threads; ++i) {
+    others.emplace_back(run);
+  }
+  run();
+  for (std::thread& thread : others) {
+    thread.join();
+  }
+}
+
+void columns_of(const std::vector<ParameterJet>& jets, Eigen::MatrixXd* columns) {
+  for (std::size_t row = 0; row < jets.size(); ++row) {
+    for (int k = 0; k < ParameterJet::DIMENSION; ++k) {
+      (*columns)(static_cast<Eigen::Index>(row), k) = jets[row].v[k];
+    }
+  }
+}
+
+bool is_finite(const Shot& shot) { return shot.start.allFinite() && shot.residual.allFinite(); }
+
+// A state is tried in plain numbers, which are ten times cheaper; slopes are worked out where the search goes on from.
+Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
+           const WindowOptions& options, int most_steps) {
+  Shot shot;
+  shot.start = from;
+  Eigen::VectorXd tried_residual;
+  double damping = 1e-6;
+  for (int k = 0; k < most_steps; ++k) {
+    window.find_slopes(&shot);
+    const StartStep step = start_step(shot.slopes, shot.residual, scale, damping);
+    const double cost = shot.residual.squaredNorm();
+    const double enough = options.least_gain + options.least_share * cost;  // a gain that ends the search
+    if (!(step.promised > enough)) {
+      break;
+    }
+    const Eigen::VectorXd tried = shot.start + step.move;
+    tried_residual.resize(shot.residual.size());
+    window.find_residual(tried, &tried_residual);
+    const double gain = cost - tried_residual.squaredNorm();
+    if (gain > 0.0) {
+      shot.start = tried;
+      shot.residual.swap(tried_residual);
+      shot.has_slopes = false;
+      damping = std::max(0.1 * damping, 1e-9);
+      if (gain < enough) {
+        break;
+      }
+    } else if (damping > 1e3) {
+      break;
+    } else {
+      damping = std::max(100.0 * damping, 1e-2);
+    }
+  }
+  return shot;
+}
+
+}  // namespace estimation
+}  // namespace sms
