@@ -1,7 +1,8 @@
 #include "estimation/recorded.hpp"
 
-#include <Eigen/QR>
 #include <stdexcept>
+
+#include "estimation/reflections.hpp"
 
 namespace sms {
 namespace estimation {
@@ -24,8 +25,16 @@ Eigen::Vector2d beginning(const Eigen::VectorXd& signal, int first, int samples,
     const double t = k * step;
     powers.row(k) << 1.0, t, t * t;
   }
-  const Eigen::Vector3d fitted = powers.colPivHouseholderQr().solve(signal.segment(first, count));
-  return fitted.head<2>();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> qr(powers);
+  const Eigen::Index rank = qr.nonzeroPivots();
+  Eigen::VectorXd fitted = signal.segment(first, count);
+  apply_q_transposed(qr, rank, &fitted);
+  qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(fitted.topRows(rank));
+  Eigen::Vector3d powers_of_time = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = 0; k < rank; ++k) {
+    powers_of_time[qr.colsPermutation().indices()[k]] = fitted[k];
+  }
+  return powers_of_time.head<2>();
 }
 
 void check_signal(const std::string& record, const char* name, const Eigen::VectorXd& signal, Eigen::Index samples) {

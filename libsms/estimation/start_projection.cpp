@@ -1,6 +1,9 @@
 #include "estimation/start_projection.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "estimation/reflections.hpp"
 
 namespace sms {
 namespace estimation {
@@ -26,7 +29,8 @@ StartProjection::StartProjection(const Eigen::MatrixXd& slopes, const Eigen::Vec
   }
   scaled_.setThreshold(1e-9);
   scaled_.compute(columns);
-  basis_ = scaled_.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), scaled_.rank());
+  basis_.setIdentity(columns.rows(), scaled_.rank());
+  detail::apply_q(scaled_, std::min(columns.rows(), columns.cols()), &basis_);
 }
 
 void StartProjection::off(const Eigen::MatrixXd& columns, Eigen::Index width, Eigen::Index row, Eigen::Index column,
