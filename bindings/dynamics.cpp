@@ -6,8 +6,6 @@
 namespace sms_python {
 namespace {
 
-using Answer = py::typing::Tuple<Rows, Status>;
-
 // In the order of sms_mass_model.
 const char* const mass_models[] = {"corrected", "table", "platform", "lumped"};
 
@@ -19,8 +17,6 @@ sms_mechanism mechanism_of(const Params& params, int masses) {
   }
   return mechanism;
 }
-
-Answer answer(const Output& output, const Status& status) { return Answer(py::make_tuple(output.array(), status)); }
 
 sms_wrench wrench_of(const double* force, const double* moment) {
   return {{force[0], force[1], force[2]}, {moment[0], moment[1], moment[2]}};

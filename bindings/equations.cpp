@@ -23,11 +23,11 @@ est::MeasuredSignal signal_of(const Columns& columns) {
   return {column(0), column(1), column(2)};
 }
 
-std::unique_ptr<est::BenchEquations> make_bench(double step, Eigen::VectorXd command, const Columns& extension,
-                                                const Columns& pressure_lower, const Columns& pressure_upper,
-                                                const Columns& supply_pressure, const Conditions& conditions,
-                                                const std::string& friction, const std::string& valve,
-                                                const std::string& chambers) {
+std::unique_ptr<est::BenchEquations> make_bench_equations(double step, Eigen::VectorXd command,
+                                                          const Columns& extension, const Columns& pressure_lower,
+                                                          const Columns& pressure_upper, const Columns& supply_pressure,
+                                                          const Conditions& conditions, const std::string& friction,
+                                                          const std::string& valve, const std::string& chambers) {
   return std::make_unique<est::BenchEquations>(est::BenchSignals{step,
                                                                  {std::move(command), signal_of(extension),
                                                                   signal_of(pressure_lower), signal_of(pressure_upper)},
@@ -36,17 +36,17 @@ std::unique_ptr<est::BenchEquations> make_bench(double step, Eigen::VectorXd com
                                                laws_of(friction, valve, chambers));
 }
 
-std::unique_ptr<est::TankEquations> make_tank(double step, Eigen::VectorXd command, const Columns& pressure,
-                                              const Columns& temperature, const Columns& supply_pressure,
-                                              const Conditions& conditions, const std::string& valve,
-                                              const std::string& chambers) {
+std::unique_ptr<est::TankEquations> make_tank_equations(double step, Eigen::VectorXd command, const Columns& pressure,
+                                                        const Columns& temperature, const Columns& supply_pressure,
+                                                        const Conditions& conditions, const std::string& valve,
+                                                        const std::string& chambers) {
   return std::make_unique<est::TankEquations>(
       est::TankSignals{step, std::move(command), signal_of(pressure), signal_of(temperature),
                        signal_of(supply_pressure), conditions_of(conditions)},
       laws_of("acceleration_dependent", valve, chambers));
 }
 
-std::unique_ptr<est::PlatformEquations> make_platform(
+std::unique_ptr<est::PlatformEquations> make_platform_equations(
     double step, const std::array<Eigen::VectorXd, 3>& command, const std::array<Columns, 3>& extension,
     const std::array<Columns, 3>& pressure_lower, const std::array<Columns, 3>& pressure_upper,
     const Columns& supply_pressure, const Columns& roll, const Columns& pitch, const Conditions& conditions,
@@ -71,7 +71,7 @@ void bind_equations(py::module_& m) {
       m, "BenchEquations",
       "The force balance, N, the air in lower and upper chamber, kg/s, and the supply, Pa, where it is read: each fed "
       "with measured signals, model less measured, sample by sample. Arrays (n, k): value, rate, second derivative.")
-      .def(py::init(&make_bench), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
+      .def(py::init(&make_bench_equations), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Columns(),
            py::arg("conditions") = Conditions(), py::arg("friction") = "acceleration_dependent",
            py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic");
@@ -79,7 +79,7 @@ void bind_equations(py::module_& m) {
       m, "TankEquations",
       "The air in the tank, kg/s, thermometer, K, and supply, Pa, where they are read: each fed with measured signals, "
       "model less measured, sample by sample. Arrays (n, k): value, rate.")
-      .def(py::init(&make_tank), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("pressure"),
+      .def(py::init(&make_tank_equations), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("pressure"),
            py::arg("temperature") = Columns(), py::arg("supply_pressure") = Columns(),
            py::arg("conditions") = Conditions(), py::arg("valve") = "iso_0_4_mpa", py::arg("chambers") = "polytropic");
   py::class_<est::PlatformEquations>(
@@ -87,7 +87,7 @@ void bind_equations(py::module_& m) {
       "Three forces, N, flows into three lower and three upper chambers, kg/s, then supply, Pa, roll and pitch, rad, "
       "where they are read: each fed with measured signals, model less measured, sample by sample. A list of three has "
       "one array a leg, (n, k): value, rate, second derivative.")
-      .def(py::init(&make_platform), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
+      .def(py::init(&make_platform_equations), py::kw_only(), py::arg("step"), py::arg("command"), py::arg("extension"),
            py::arg("pressure_lower"), py::arg("pressure_upper"), py::arg("supply_pressure") = Columns(),
            py::arg("roll") = Columns(), py::arg("pitch") = Columns(), py::arg("conditions") = Conditions(),
            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",

@@ -5,15 +5,11 @@
 namespace sms_python {
 namespace {
 
-using Answer = py::typing::Tuple<Rows, Status>;
-
 sms_geometry geometry_of(const Params& params) {
   sms_geometry geometry;
   sms_geometry_from_params(&params, &geometry);
   return geometry;
 }
-
-Answer answer(const Output& output, const Status& status) { return Answer(py::make_tuple(output.array(), status)); }
 
 py::typing::Tuple<Rows, Rows, py::array_t<int>, py::array_t<double>, Status> inverse_kinematics(const Params& params,
                                                                                                 const Column& roll,

@@ -13,8 +13,6 @@ using PlatformProblem = est::ShootingProblem<est::PlatformPlant>;
 using PlatformLoopProblem = est::ShootingProblem<est::PlatformLoopPlant>;
 using Noise = std::map<std::string, double>;
 
-constexpr double kRunUp = 0.1;  // s
-
 // "chamber_leakage_lower" is that of all legs, "chamber_leakage_lower:2" what leg 2 has more.
 int leg_param_index(const std::string& name) {
   const std::size_t colon = name.find(':');

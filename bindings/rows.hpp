@@ -118,4 +118,11 @@ Status each_row(py::ssize_t rows, std::initializer_list<const Output*> outputs, 
   return status;
 }
 
+// Rows with a status each.
+using Answer = py::typing::Tuple<Rows, Status>;
+
+inline Answer answer(const Output& output, const Status& status) {
+  return Answer(py::make_tuple(output.array(), status));
+}
+
 }  // namespace sms_python

@@ -16,8 +16,6 @@ using BenchLoopProblem = est::ShootingProblem<est::BenchLoopPlant>;
 using TankPlantProblem = est::ShootingProblem<est::TankPlant>;
 using Noise = std::map<std::string, double>;
 
-constexpr double kRunUp = 0.1;  // s
-
 est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::VectorXd extension,
                                    Eigen::VectorXd pressure_lower, Eigen::VectorXd pressure_upper,
                                    Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions,
@@ -74,9 +72,9 @@ est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eige
           valve_law_of(valve)};
 }
 
-std::unique_ptr<TankPlantProblem> make_tank_problem(std::vector<est::TankPlantRecord> records, const Noise& noise,
-                                                    const std::string& chambers, double window, double longest_step,
-                                                    int threads) {
+std::unique_ptr<TankPlantProblem> make_tank_plant_problem(std::vector<est::TankPlantRecord> records, const Noise& noise,
+                                                          const std::string& chambers, double window,
+                                                          double longest_step, int threads) {
   const est::TankNoise sizes{noise.at("tank_pressure"), noise.at("tank_temperature"), noise.at("supply_pressure")};
   return std::make_unique<TankPlantProblem>(
       est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", "iso_0_4_mpa", chambers), longest_step),
@@ -134,7 +132,7 @@ void bind_tank(py::module_& m) {
            py::arg("valve") = "iso_0_4_mpa");
   auto tank = bind_shooting_problem<est::TankPlant, est::Problem>(m, "TankPlantProblem");
   bind_state(tank);
-  tank.def(py::init(&make_tank_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+  tank.def(py::init(&make_tank_plant_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
            py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
            py::arg("threads") = 1,
            "noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden "

@@ -18,6 +18,8 @@
 
 namespace sms_python {
 
+constexpr double kRunUp = 0.1;  // s, of every record
+
 // (ParamIndex, by how much it is larger) from names.
 inline std::vector<std::pair<int, double>> conditions_of(const std::map<std::string, double>& by_name) {
   std::vector<std::pair<int, double>> conditions;
