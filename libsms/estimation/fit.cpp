@@ -11,6 +11,8 @@ namespace sms {
 namespace estimation {
 namespace {
 
+using SquareSvd = Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner>;
+
 std::vector<int> indices(const std::vector<FreeParam>& free) {
   std::vector<int> out;
   for (const FreeParam& f : free) {
@@ -167,7 +169,7 @@ double condition_number(const RowMatrix& jacobian, const Eigen::VectorXd& weight
     const double length = columns.col(k).norm();
     columns.col(k) /= length > 0.0 ? length : 1.0;
   }
-  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(columns.transpose() * columns).singularValues();
+  const Eigen::VectorXd singular = SquareSvd(columns.transpose() * columns).singularValues();
   return std::sqrt(singular[0] / singular[singular.size() - 1]);
 }
 

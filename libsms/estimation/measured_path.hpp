@@ -14,6 +14,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -48,6 +49,13 @@ struct MeasuredMotion {
   std::vector<Vec3<double>> extension;
   std::vector<Vec3<double>> rate;
 };
+
+namespace detail {
+
+// Value and slope of every sample of three signals, by a parabola through those around it.
+MeasuredMotion smoothed(const std::array<Eigen::VectorXd, 3>& extension, double step);
+
+}  // namespace detail
 
 MeasuredPath<double> measured_path(const Params<double>& p, MassModel masses, const MeasuredMotion& motion);
 

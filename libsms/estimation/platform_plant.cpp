@@ -1,6 +1,5 @@
 #include "estimation/platform_plant.hpp"
 
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -10,8 +9,6 @@
 namespace sms {
 namespace estimation {
 namespace {
-
-constexpr double kSmooth = 0.025;  // s either way
 
 void check(const PlatformRecord& record, std::size_t number) {
   const std::string name = "platform record " + std::to_string(number);
@@ -37,33 +34,6 @@ void check(const PlatformRecord& record, std::size_t number) {
   }
 }
 
-// Value and slope of every sample, by a parabola through those around it.
-MeasuredMotion smoothed(const PlatformRecord& record) {
-  const int samples = static_cast<int>(record.extension[0].size());
-  const int half = std::max(2, static_cast<int>(std::lround(kSmooth / record.step)));
-  const int count = std::min(samples, 2 * half + 1);
-  MeasuredMotion motion;
-  for (int k = 0; k < samples; ++k) {
-    const int first = std::min(std::max(k - half, 0), samples - count);
-    Eigen::MatrixX3d powers(count, 3);
-    for (int j = 0; j < count; ++j) {
-      const double t = (first + j - k) * record.step;
-      powers.row(j) << 1.0, t, t * t;
-    }
-    const Eigen::LDLT<Eigen::Matrix3d> normal = (powers.transpose() * powers).ldlt();
-    Vec3<double> extension, rate;
-    for (int i = 0; i < 3; ++i) {
-      const auto around = record.extension[static_cast<std::size_t>(i)].segment(first, count);
-      const Eigen::Vector3d fitted = normal.solve(powers.transpose() * around);
-      extension(i) = fitted[0];
-      rate(i) = fitted[1];
-    }
-    motion.extension.push_back(extension);
-    motion.rate.push_back(rate);
-  }
-  return motion;
-}
-
 }  // namespace
 
 PlatformPlant::PlatformPlant(std::vector<PlatformRecord> records, const PlatformNoise& noise, const ActuatorLaws& laws,
@@ -72,7 +42,7 @@ PlatformPlant::PlatformPlant(std::vector<PlatformRecord> records, const Platform
   int samples_before = 0;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     check(records_[i], i);
-    measured_.push_back(smoothed(records_[i]));
+    measured_.push_back(detail::smoothed(records_[i].extension, records_[i].step));
     first_of_.push_back(samples_before);
     samples_before += samples(static_cast<int>(i));
   }
