@@ -14,13 +14,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "estimation/measured_motion.hpp"
 #include "sms/integrate.hpp"
 #include "sms/platform.hpp"
 
@@ -43,19 +43,6 @@ struct MeasuredPath {
   std::vector<PathPoint<S>> points;  // one a sample
   Mat3<S> leaning;                   // d w / d e at rest in the middle, N/m
 };
-
-// Extensions and their rates, one a sample.
-struct MeasuredMotion {
-  std::vector<Vec3<double>> extension;
-  std::vector<Vec3<double>> rate;
-};
-
-namespace detail {
-
-// Value and slope of every sample of three signals, by a parabola through those around it.
-MeasuredMotion smoothed(const std::array<Eigen::VectorXd, 3>& extension, double step);
-
-}  // namespace detail
 
 MeasuredPath<double> measured_path(const Params<double>& p, MassModel masses, const MeasuredMotion& motion);
 

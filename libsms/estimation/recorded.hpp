@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <string>
 
+#include "estimation/recorded_signal.hpp"
 #include "sms/sensor.hpp"
 #include "sms/valve.hpp"
 
@@ -55,15 +55,6 @@ template <typename S>
 S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Index sample, double noise) {
   return sample < 0 || sample >= measured.size() ? S(0) : S((predicted - S(measured[sample])) * S(1.0 / noise));
 }
-
-// Which way a signal had gone last at a sample, by more than `least`: 1 up, -1 down, 0 if it never did.
-double moved_last(const Eigen::VectorXd& signal, int sample, double least);
-
-// Value at the first of some samples, by a parabola through them; its slope per second behind it.
-Eigen::Vector2d beginning(const Eigen::VectorXd& signal, int first, int samples, double step);
-
-// std::invalid_argument for a signal of another length than the command, or with a value that is not finite.
-void check_signal(const std::string& record, const char* name, const Eigen::VectorXd& signal, Eigen::Index samples);
 
 }  // namespace detail
 

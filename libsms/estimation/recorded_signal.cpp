@@ -1,5 +1,7 @@
-#include "estimation/recorded.hpp"
+#include "estimation/recorded_signal.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "estimation/reflections.hpp"

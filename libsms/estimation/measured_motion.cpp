@@ -1,6 +1,8 @@
-#include <Eigen/Cholesky>
+#include "estimation/measured_motion.hpp"
 
-#include "estimation/measured_path.hpp"
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 
 namespace sms {
 namespace estimation {
