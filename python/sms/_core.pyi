@@ -2485,13 +2485,13 @@ class TankPlantRecord:
     """
     One evenly sampled record of the rig 'tank'; arrays (n,), SI, empty where there is no sensor.
     """
-    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, hold: str = 'linear') -> None:
+    def __init__(self, *, step: typing.SupportsFloat | typing.SupportsIndex, command: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], temperature: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., supply_pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., conditions: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, hold: str = 'linear', valve: str = 'iso_0_4_mpa') -> None:
         ...
 class TankPlantProblem(Problem):
     """
     Prediction errors over windows, in units of the noise: for each sample of a window, each output.
     """
-    def __init__(self, *, records: collections.abc.Sequence[TankPlantRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, records: collections.abc.Sequence[TankPlantRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         """
         noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.
         """

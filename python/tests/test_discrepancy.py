@@ -58,9 +58,7 @@ def test_whitening_undoes_the_covariance_and_colouring_undoes_whitening() -> Non
     assert root.colour(root.whiten(values)) == pytest.approx(values, abs=1e-9)
     first = found.rows[0]
     tau = np.repeat(found.tau, KNOTS)
-    covariance = (
-        np.eye(SAMPLES) + problem.inputs[first] * tau**2 @ problem.inputs[first].T
-    )
+    covariance = np.eye(SAMPLES) + problem.inputs[first] * tau**2 @ problem.inputs[first].T
     padded = np.zeros((len(residual), SAMPLES))
     padded[first] = covariance
     half = root.whiten(padded)[first]
@@ -129,7 +127,9 @@ def test_an_omitted_parameter_leaves_the_marginal_of_what_is_known_of_the_others
     random = draw("marginal of a joint covariance")
     root = random.normal(size=(4, 4))
     joint = Joint(("a", "b", "c", "d"), root @ root.T + 0.1 * np.eye(4))
-    known = {n: float(s) for n, s in zip(joint.names, np.sqrt(np.diag(joint.covariance)), strict=True)}
+    known = {
+        n: float(s) for n, s in zip(joint.names, np.sqrt(np.diag(joint.covariance)), strict=True)
+    }
     names = ["a", "x", "b", "c", "d"]
     full = Nuisance(names, np.zeros((3, 5)), pulls(names, known, joint), random.normal(size=5))
     pull = full.without("b").pull

@@ -9,11 +9,18 @@ import pytest
 from plant_support import write_bench
 from sms import _core
 from sms.diagnosis import diagnose
+from sms.diagnosis.adequacy.residual_energy import (
+    Left,
+    energies,
+    excess,
+    nothing_left,
+    small,
+    tolerated,
+)
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import FLOW_MAP, baseline_hypothesis, fit
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import Unexplained
-from sms.diagnosis.selection.stepwise import Left, energies, excess, nothing_left, small, tolerated
 from sms.estimation.run import is_held
 from sms.io.check import check_record
 from sms.io.records import load_record

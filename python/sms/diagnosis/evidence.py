@@ -238,9 +238,7 @@ def series_of(baseline: Fitted, final: Fitted, data: Data) -> tuple[Series, ...]
 def _series(part: Runs, baseline: Fitted, final: Fitted) -> list[Series]:
     """Measured and predicted curves of one role, window by window from the best initial states."""
     whole = part.whole
-    base, extended = (
-        whole.problem.errors(fitted.params) for fitted in (baseline, final)
-    )
+    base, extended = (whole.problem.errors(fitted.params) for fitted in (baseline, final))
     out = []
     for number, run in enumerate(part.motions):
         for c, channel in enumerate(part.channels):

@@ -27,9 +27,12 @@ ALWAYS_UNCERTAIN = ("stiction_shape", *FLOW_MAP)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
 TURNS, SETTLED = 2, 0.2
 """Of parameters and discrepancy, each for the other; and the change of the logarithm of tau that ends it. Run time."""
+MOST_INFLATED = 10.0
+"""How many times larger a standard error may be by the scatter of blocks than by the noise: with few blocks, that
+scatter is hardly known itself. Judgement."""
 REFIT_STEPS, REFIT_NEAR = 3, 1
-"""Jacobians of least squares on records that were not fitted: what is known moves little there; and with those of a model
-nearby to begin with. Run time."""
+"""Jacobians of least squares on records that were not fitted: what is known moves little there; and with those of a
+model nearby to begin with. Run time."""
 SAME_MACHINE = 0.1
 """Of what is declared: by how much a number may differ between a day when the machine was well and today. Judgement."""
 WIDE = 3.0
@@ -60,8 +63,10 @@ class Hypothesis:
         free = {n: bounds for n, bounds in self.free.items() if n not in FLOW_MAP}
         return replace(self, free=free, known={n: u for n, u in self.known.items() if n in free})
 
-    def with_effect(self, effect: Effect, plausible: tuple[float, float] | None = None) -> Hypothesis:
-        """The effect's parameters freed within their bounds, its first one within what is plausible if that is given."""
+    def with_effect(
+        self, effect: Effect, plausible: tuple[float, float] | None = None
+    ) -> Hypothesis:
+        """The effect's parameters freed within their bounds, its first one within what is plausible if given."""
         wide = {
             name: (self.table[name].lower, self.table[name].upper) for name in effect.parameters
         }
@@ -193,7 +198,8 @@ def fit(
 ) -> Fitted:
     """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks.
 
-    most_steps: Jacobians that are worked out at most. slopes: parameter -> (rows,) change of the residual with it near the initial ones, of all that are free.
+    most_steps: Jacobians that are worked out at most. slopes: parameter -> (rows,) change of the residual with it near
+    the initial ones, of all that are free.
     """
     free = free_of(hypothesis)
     names = [f.name for f in free]
@@ -270,8 +276,9 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     noise = max(float(np.mean(residual**2)), 1e-12)
     robust = covariance_of(jacobian, residual, runs.block) if pull.size else bread
     # With more parameters than windows the robust one has too low a rank: the larger of the two variances holds.
-    inflate = np.sqrt(np.maximum(np.diag(robust) / np.maximum(np.diag(noise * bread), 1e-300), 1.0))
-    inflate = np.minimum(inflate, 10.0)
+    by_noise, by_blocks = np.diag(noise * bread), np.diag(robust)
+    least = np.maximum(by_blocks / MOST_INFLATED**2, 1e-300)
+    inflate = np.sqrt(np.maximum(by_blocks / np.maximum(by_noise, least), 1.0))
     return np.asarray(noise * bread * np.outer(inflate, inflate))
 
 
@@ -307,7 +314,9 @@ def refitted_on(fitted: Fitted, runs: Runs, near: Fitted | None = None) -> Fitte
     start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
     known = {n: u for n, u in h.known.items() if n not in held}
     moved = replace(h, start=start, free=free, known=known)
-    slopes = {} if near is None else dict(zip(near.hypothesis.free, near.fit.jacobian.T, strict=True))
+    slopes = (
+        {} if near is None else dict(zip(near.hypothesis.free, near.fit.jacobian.T, strict=True))
+    )
     known_slopes = slopes if set(free) <= set(slopes) else None
     if fitted.discrepancy is None:
         steps = REFIT_STEPS if known_slopes is None else REFIT_NEAR

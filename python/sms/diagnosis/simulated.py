@@ -17,6 +17,15 @@ from sms.diagnosis.adequacy.hysteresis import Hysteresis
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency, inconsistency
+from sms.diagnosis.adequacy.residual_energy import (
+    Left,
+    energies,
+    excess,
+    left_when_well,
+    nothing_left,
+    small,
+    tolerated,
+)
 from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
 from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
@@ -53,17 +62,7 @@ from sms.diagnosis.result import (
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.selection.stepwise import (
-    Left,
-    Progress,
-    energies,
-    excess,
-    left_when_well,
-    nothing_left,
-    small,
-    stepwise_selection,
-    tolerated,
-)
+from sms.diagnosis.selection.stepwise import Progress, stepwise_selection
 from sms.diagnosis.thresholds import UNKNOWN_SHARE
 from sms.io.errors import InputError
 from sms.io.records import Record
@@ -167,9 +166,7 @@ def investigate(
         plain = fit(hypothesis.with_exact_maps, data.identify)
         found = inconsistency(plain, data, able, before.floor)
     verdict = decide(outcome, adequate) if found is None else "data-fault"
-    return Case(
-        data, baseline, outcome, before, after, least, blind, able, verdict, found, law
-    )
+    return Case(data, baseline, outcome, before, after, least, blind, able, verdict, found, law)
 
 
 def _with_discrepancy(fitted: Fitted, data: Data) -> Fitted:
@@ -291,7 +288,9 @@ def _cause(members: list[Trial], case: Case) -> Cause:
 
     def found(m: Trial) -> tuple[ParameterValue, ...]:
         at = final if m is members[0] else _with_discrepancy(m.fitted, data)
-        return (found_value(at, m.effect, data),)
+        others = m.effect.parameters[1:]
+        beside = (value_of(at, n, data.rig.declared(n).value) for n in others)
+        return (found_value(at, m.effect, data), *beside)
 
     each = record_by_record(final, members[0].effect, data)
     return cause_from(members, found, {record: value for record, (value, _) in each.items()})

@@ -1,4 +1,4 @@
-"""What every model of a machine leaves beside noise, as a part of the statistics: a random hidden input of each equation.
+"""What every model of a machine leaves beside noise, as a part of the statistics: a random input of each equation.
 
 Kennedy and O'Hagan (2001) put one random function between a simulator's output and the data. Here it sits where a
 model is wrong, in its equations: each has an unknown input that is drawn anew at knots 50 ms apart, linear in between,
@@ -7,9 +7,9 @@ residual of a window has the covariance
 
   V = I + H diag(tau^2) H'
 
-in units of the noise. Least squares with V (generalised least squares) asks of a parameter what a wandering input cannot
-do as well: a standard error grows where the discrepancy can imitate it, and no parameter is driven to its bound by a
-friction or a flow that is a little off. The tau come from the data, by maximum marginal likelihood (fixed point of
+in units of the noise. Generalised least squares with V asks of a parameter what a wandering input cannot do as well: a
+standard error grows where the discrepancy can imitate it, and no parameter is driven to its bound by a friction or a
+flow that is a little off. The tau come from the data, by maximum marginal likelihood (fixed point of
 MacKay, 1992); of an equation that is right they go to nothing.
 """
 

@@ -25,7 +25,6 @@ from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import without_leg
 
-
 RUN_UP = 0.1
 """s before the first window of a record, in which the spool follows the command (WindowOptions)."""
 

@@ -90,7 +90,8 @@ def still_hidden_in_words(effects: Sequence[StillHidden]) -> str:
         f"{e.title}, below {format_quantity(e.size, e.unit, e.parameter)}" for e in least
     )
     return (
-        f"These records are least sensitive to: {listed}. The limits of all effects are in diagnosis.json (still_hidden)."
+        f"These records are least sensitive to: {listed}. The limits of all effects are in diagnosis.json "
+        "(still_hidden)."
     )
 
 

@@ -18,8 +18,8 @@ from sms.io.records import Record
 from sms.io.rig import Rig
 
 SHORTEST, LONGEST, PER_RECORD = 1.0, 5.0, 5.0
-"""s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does, and
-the longer a window, the less its initial temperature can imitate a wrong flow."""
+"""s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does,
+and the longer a window, the less its initial temperature can imitate a wrong flow."""
 TABLES = {2e5: "iso_0_2_mpa", 4e5: "iso_0_4_mpa"}
 """Gauge pressure of the supply, Pa, at which a table of the valve was measured."""
 LONGEST_STEP = 1e-3
@@ -50,7 +50,7 @@ def make_run(rig: Rig, record: Record) -> Run:
 
 
 def valve_of(rig: Rig, run: Run) -> str:
-    """The law of the valve in one record: as the rig file says, else the table that was measured at the nearest supply."""
+    """The law of the valve in one record: as the rig file says, else the table measured at the nearest supply."""
     if "valve" in rig.model.model_fields_set:
         return rig.model.valve
     supply = rig.declared("supply_pressure").value + run.conditions.get("supply_pressure", 0.0)

@@ -19,9 +19,7 @@ from sms.estimation.nuisance import project
 from sms.parameters import common_parameter
 
 
-def still_hidden(
-    fitted: Fitted, data: Data, effects: Sequence[Effect]
-) -> tuple[StillHidden, ...]:
+def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple[StillHidden, ...]:
     """Of each of these effects, in their order; to first order from the model as it stands."""
     if not effects:
         return ()
@@ -38,9 +36,7 @@ def still_hidden(
         low, high = (abs(end) for end in effect.plausible_range(reference))
         shift = float(least / max(own, 1e-300))
         if effect.kind == "shifted":
-            low, high = (
-                abs(end - reference) for end in effect.plausible_range(reference)
-            )
+            low, high = (abs(end - reference) for end in effect.plausible_range(reference))
         unit = data.rig.table[name].unit
         found.append(
             StillHidden(effect.id, effect.signal, effect.title, name, shift, unit, max(low, high))

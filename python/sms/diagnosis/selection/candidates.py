@@ -87,7 +87,12 @@ def score_effects(
     room = np.array([room_of(e, current, data.rig) for e in effects])
     allowed = np.column_stack([room[:, 0] < 0.0, room[:, 1] > 0.0])
     return score_tests(
-        sensitivity, nuisance, current.whiten(current.fit.residual), data.identify.block, allowed, rng
+        sensitivity,
+        nuisance,
+        current.whiten(current.fit.residual),
+        data.identify.block,
+        allowed,
+        rng,
     )
 
 

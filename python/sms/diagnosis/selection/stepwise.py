@@ -4,142 +4,53 @@ A machine differs from every model of it, by a percent here and there, all the t
 name. So a cause is not asked to explain everything. It is asked to take most of what is left, in nearly every window,
 on the records that it was fitted to and on those that it was not. What it leaves is another question (adequacy/).
 
-How much a model leaves is counted by window and signal, in units of the noise, on a logarithmic scale: a window in
-which a piston sticks where the machine slides would outweigh all others in a sum of squares, and it says no more than
-they do.
+How much a model leaves is counted by window and signal (adequacy/residual_energy.py).
 
-A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and because a
-linear step says nothing of a long way, at a ladder of finite sizes with all else held. Those that promise most are
-fitted, from the better of the two. The best joins the model with whatever cannot be told from it, and so on until
-nothing stands. In the end each cause is taken out again, and must be missed.
+A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and at a ladder of
+finite sizes (finite_steps.py). Those that promise most are fitted, from the better of the two. The best joins the model
+with whatever cannot be told from it, and so on until nothing stands. In the end each cause is taken out again, and must
+be missed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import wilcoxon
 
 from sms import _core
 from sms.arrays import Array
+from sms.diagnosis.adequacy.residual_energy import Left, excess, logarithms, nothing_left, small
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
-    Hypothesis,
-    fit,
-    refitted,
-    residual_of,
-)
+from sms.diagnosis.hypothesis import Data, Fitted, fit, refitted, residual_of
 from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
+from sms.diagnosis.selection.finite_steps import (
+    best_step,
+    chosen_by_step,
+    extended,
+    telling_windows,
+)
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.thresholds import (
     ALIKE,
     CANDIDATE_STEPS,
-    FINITE_STEPS,
-    LEAST_OF_NOISE,
     LEAST_SHARE,
     MOST_CAUSES,
     NEARLY_ALL,
     SIGNIFICANT,
-    STEPPED_ON,
     TELLS_APART,
-    TOLERATED,
     TRIED_BY_SLOPE,
-    TRIED_BY_STEP,
     TWINS,
-    WELL,
 )
 from sms.estimation.block_statistics import interval, resampled
-from sms.estimation.least_squares import Free, changed, fit_windows
-from sms.estimation.windows import Runs
-from sms.parameters import common_parameter
+from sms.estimation.least_squares import changed
 from sms.units_display import format_quantity
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share that is done, 0..1."""
-
-
-# ---- how much is left ------------------------------------------------------------------------------
-
-
-def energies(runs: Runs, residual: Array) -> Array:
-    """(windows, channels): mean square of the residual (rows,), in units of the declared noise."""
-    channels = len(runs.channels)
-    first = np.array([w.row for w in runs.problem.windows])
-    samples = np.array([w.samples for w in runs.problem.windows])
-    squares = residual.reshape(-1, channels) ** 2
-    sums = np.add.reduceat(squares, first // channels, axis=0)
-    return np.asarray(sums / samples[:, None])
-
-
-@dataclass(frozen=True)
-class Left:
-    """What a model leaves, window by window: (windows, channels) on records of either role.
-
-    On validation records its causes are held, and what is known may move within what is declared: whether the model is
-    of the right form is one question, how well its fitted values predict another (hypothesis.unseen).
-    """
-
-    identify: Array
-    validate: Array
-
-    @classmethod
-    def by(cls, fitted: Fitted, data: Data) -> Left:
-        return cls(
-            energies(data.identify, fitted.fit.residual),
-            energies(data.validate, refitted(fitted, data).fit.residual),
-        )
-
-    @property
-    def logarithms(self) -> Array:
-        """(windows,): sum over the channels, the noise of a sample added, on the fitted records and then the others."""
-        return np.asarray(np.log1p(np.vstack([self.identify, self.validate])).sum(axis=1))
-
-
-def excess(energy: Array) -> float:
-    """Of (windows, channels): mean square beyond the noise, the channels' mean."""
-    return float(np.mean(np.maximum(energy.mean(axis=0) - 1.0, 0.0)))
-
-
-def tolerated(baseline: Fitted, data: Data) -> Array:
-    """(channels,): mean square, in units of the noise, that a model may leave beyond it.
-
-    All that is declared uncertain moves the predictions; TOLERATED of that is not worth a word.
-    """
-    h, runs = baseline.hypothesis, data.identify
-    uncertainty = np.array([h.known.get(n, 0.0) for n in h.free])
-    moved = np.sum((baseline.fit.jacobian * uncertainty) ** 2, axis=1)
-    by_channel = np.array([np.mean(moved[runs.channel == c]) for c in range(len(runs.channels))])
-    return np.asarray(TOLERATED**2 * by_channel)
-
-
-def small(left: Left, least: Array) -> bool:
-    """Whether what is left beyond the noise is within what is tolerated (channels,), on the records of each role."""
-    return all(
-        float(np.mean(np.maximum(e.mean(axis=0) - 1.0, 0.0) / np.maximum(least, 1e-12))) < 1.0
-        for e in (left.identify, left.validate)
-    )
-
-
-def nothing_left(left: Left, data: Data) -> bool:
-    """Whether a model leaves hardly more than noise: less than twice what fair descriptions differ by."""
-    total, worst = data.identify.kind.honest
-    beyond = 0.5 * (left.identify.mean(axis=0) + left.validate.mean(axis=0)) - 1.0
-    return float(beyond.mean()) < 2.0 * total and float(beyond.max()) < 2.0 * worst
-
-
-def left_when_well(healthy: Fitted, runs: Runs) -> Array:
-    """(channels,): the same from records of the healthy machine, whose own error is no fault of it.
-
-    healthy: the baseline as these records (runs) have it. One and a half times that, and a tenth of the noise at least.
-    """
-    beyond = np.maximum(energies(runs, healthy.fit.residual).mean(axis=0) - 1.0, 0.0)
-    return np.asarray(WELL * beyond + LEAST_OF_NOISE)
 
 
 # ---- one round -------------------------------------------------------------------------------------
@@ -152,10 +63,10 @@ def try_effects(
     scores = score_effects(current, data, effects, rng)
     room = np.array([room_of(e, current, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
-    excerpt = data.identify.excerpt(_telling(data.identify, current.fit.residual))
-    here = _logarithms(excerpt, residual_of(excerpt, current.params))
-    steps = [_best_step(e, current, data, excerpt, here) for e in effects]
-    by_step = _chosen_by_step(steps)
+    excerpt = data.identify.excerpt(telling_windows(data.identify, current.fit.residual))
+    here = logarithms(excerpt, residual_of(excerpt, current.params))
+    steps = [best_step(e, current, data, excerpt, here) for e in effects]
+    by_step = chosen_by_step(steps)
     by_slope = [int(k) for k in np.argsort(-promise)[:TRIED_BY_SLOPE] if promise[k] > 0.0]
     chosen = list(dict.fromkeys(by_step + by_slope))
     chosen += [
@@ -187,79 +98,6 @@ def try_effects(
     return trials
 
 
-def _telling(runs: Runs, residual: Array) -> list[int]:
-    """Windows on which finite steps are tried: the worst ones, and as many evenly over all."""
-    left = np.log1p(energies(runs, residual)).sum(axis=1)
-    worst = np.argsort(-left)[:STEPPED_ON]
-    evenly = np.linspace(0, len(left) - 1, min(STEPPED_ON, len(left))).round().astype(int)
-    return sorted({int(k) for k in (*worst, *evenly)})
-
-
-def _logarithms(runs: Runs, residual: Array) -> float:
-    return float(np.sum(np.log1p(energies(runs, residual))))
-
-
-def extended(hypothesis: Hypothesis, effect: Effect, data: Data) -> Hypothesis:
-    """With the effect, its size within what is plausible."""
-    reference = data.rig.declared(common_parameter(effect.parameters[0])).value
-    return hypothesis.with_effect(effect, effect.plausible_range(reference))
-
-
-@dataclass(frozen=True)
-class Step:
-    """An effect at the best of the sizes at which it was tried on an excerpt, all else held."""
-
-    gain: float
-    """By how much it lowers the logarithms of what is left."""
-    params: _core.Params
-    change: Array
-    """(rows,) of the excerpt's residual."""
-
-
-def _best_step(effect: Effect, current: Fitted, data: Data, excerpt: Runs, here: float) -> Step:
-    """The best of a ladder of sizes, and from there least squares over the effect's own parameters."""
-    name = effect.parameters[0]
-    now = current.params[name]
-    before = residual_of(excerpt, current.params)
-    best = Step(0.0, current.params, np.zeros(len(before)))
-    low, high = room_of(effect, current, data.rig)
-    ladders = [[now + part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
-    if low > 0.0 or high < 0.0:  # what is plausible begins away from here
-        ladders = [[now + low], [now + high]]
-    for ladder in ladders:
-        for value in ladder:
-            params = changed(current.params, [name], np.array([value]))
-            residual = residual_of(excerpt, params)
-            if not np.all(np.isfinite(residual)):
-                continue
-            gain = here - _logarithms(excerpt, residual)
-            if gain > best.gain:
-                best = Step(gain, params, residual - before)
-            if gain < -len(excerpt.problem.windows):  # worse by far: larger ones are no better
-                break
-    if best.gain <= 0.0:
-        return best
-    bounds = extended(current.hypothesis, effect, data).free
-    free = [Free(n, *bounds[n], 0.0, current.params[n]) for n in effect.parameters]
-    found = fit_windows(excerpt.problem, best.params, free)
-    gain = here - _logarithms(excerpt, found.residual)
-    return best if gain < best.gain else Step(gain, found.params, found.residual - before)
-
-
-def _chosen_by_step(steps: Sequence[Step]) -> list[int]:
-    """Those that help most, and those that do nearly the same as the first of them."""
-    order = sorted(range(len(steps)), key=lambda k: -steps[k].gain)
-    first = steps[order[0]].change
-    unit = first / max(float(np.linalg.norm(first)), 1e-300)
-    alike = [
-        k
-        for k in order
-        if float(unit @ steps[k].change) > TWINS * float(np.linalg.norm(steps[k].change))
-    ]
-    helping = [k for k in order if steps[k].gain > 0.0]
-    return list(dict.fromkeys(helping[:TRIED_BY_STEP] + [k for k in alike if k in helping]))
-
-
 def _fitted(
     effect: Effect,
     current: Fitted,
@@ -277,7 +115,7 @@ def _fitted(
     for start in (by_step, changed(current.params, [name], np.array([linear]))):
         residual = residual_of(data.identify, start)
         if np.all(np.isfinite(residual)):
-            left = _logarithms(data.identify, residual)
+            left = logarithms(data.identify, residual)
             if best is None or left < best[0]:
                 best = (left, start)
     start = current.params if best is None else best[1]
@@ -345,7 +183,7 @@ def _objection(trial: Trial, data: Data, needed: float) -> str:
     """Why the trial is no cause; empty if there is nothing against it. Without the validation records where they do not
     speak.
     """
-    effect, name = trial.effect, trial.effect.parameters[0]
+    name = trial.effect.parameters[0]
     if name not in trial.fitted.movable:
         said = format_quantity(trial.fitted.params[name], data.rig.table[name].unit, name)
         return f"fits best at or beyond {said}, the end of what is plausible"
@@ -371,21 +209,39 @@ def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> lis
         return []
     best = accepted[0]
     left = Left.by(best.fitted, data).logarithms
-    change = _change(best, current, data)
     members = [best]
     for trial in accepted[1:]:
-        other = _change(trial, current, data)
-        cosine = float(change @ other) / max(
-            float(np.linalg.norm(change) * np.linalg.norm(other)), 1e-300
-        )
-        best.similarity[trial.effect.key] = trial.similarity[best.effect.key] = abs(cosine)
+        cosine = _similarity(best, trial, current, data)
         worse = Left.by(trial.fitted, data).logarithms - left
         error = float(np.std(worse)) * np.sqrt(len(worse))
         if cosine > TWINS and float(worse.sum()) <= TELLS_APART * error:
             members.append(trial)
+    members = _plainest(members)
     for trial in members:
+        _similarity(members[0], trial, current, data)
         trial.support = 1.0 / len(members)
     return members
+
+
+def _similarity(one: Trial, other: Trial, current: Fitted, data: Data) -> float:
+    """Cosine between two changes of all predictions; its magnitude is noted in both trials."""
+    a, b = _change(one, current, data), _change(other, current, data)
+    cosine = float(a @ b) / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
+    one.similarity[other.effect.key] = other.similarity[one.effect.key] = abs(cosine)
+    return cosine
+
+
+def _plainest(members: list[Trial]) -> list[Trial]:
+    """Of what cannot be told apart, that with the fewest parameters first; no effect again with more of them."""
+    order = sorted(members, key=lambda t: (len(t.effect.parameters), -t.lower))
+    return [
+        t
+        for t in order
+        if not any(
+            o.effect.id == t.effect.id and set(o.effect.parameters) < set(t.effect.parameters)
+            for o in order
+        )
+    ]
 
 
 def _change(trial: Trial, current: Fitted, data: Data) -> Array:

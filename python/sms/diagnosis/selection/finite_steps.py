@@ -1,0 +1,91 @@
+"""Effects tried at finite sizes with all else held: a linear step says nothing of a long way.
+
+On an excerpt of the records: the windows with the largest error, and some evenly over all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sms import _core
+from sms.arrays import Array
+from sms.diagnosis.adequacy.residual_energy import energies, logarithms
+from sms.diagnosis.effects.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted, Hypothesis, residual_of
+from sms.diagnosis.selection.candidates import room_of
+from sms.diagnosis.thresholds import FINITE_STEPS, STEPPED_ON, TRIED_BY_STEP, TWINS
+from sms.estimation.least_squares import Free, changed, fit_windows
+from sms.estimation.windows import Runs
+from sms.parameters import common_parameter
+
+
+def telling_windows(runs: Runs, residual: Array) -> list[int]:
+    """Windows on which finite steps are tried: the worst ones, and as many evenly over all."""
+    left = np.log1p(energies(runs, residual)).sum(axis=1)
+    worst = np.argsort(-left)[:STEPPED_ON]
+    evenly = np.linspace(0, len(left) - 1, min(STEPPED_ON, len(left))).round().astype(int)
+    return sorted({int(k) for k in (*worst, *evenly)})
+
+
+def extended(hypothesis: Hypothesis, effect: Effect, data: Data) -> Hypothesis:
+    """With the effect, its size within what is plausible."""
+    reference = data.rig.declared(common_parameter(effect.parameters[0])).value
+    return hypothesis.with_effect(effect, effect.plausible_range(reference))
+
+
+@dataclass(frozen=True)
+class Step:
+    """An effect at the best of the sizes at which it was tried on an excerpt, all else held."""
+
+    gain: float
+    """By how much it lowers the logarithms of what is left."""
+    params: _core.Params
+    change: Array
+    """(rows,) of the excerpt's residual."""
+
+
+def best_step(effect: Effect, current: Fitted, data: Data, excerpt: Runs, here: float) -> Step:
+    """The best of a ladder of sizes, and from there least squares over the effect's own parameters."""
+    name = effect.parameters[0]
+    now = current.params[name]
+    before = residual_of(excerpt, current.params)
+    best = Step(0.0, current.params, np.zeros(len(before)))
+    low, high = room_of(effect, current, data.rig)
+    ladders = [[now + part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
+    if low > 0.0 or high < 0.0:  # what is plausible begins away from here
+        ladders = [[now + low], [now + high]]
+    for ladder in ladders:
+        for value in ladder:
+            params = changed(current.params, [name], np.array([value]))
+            residual = residual_of(excerpt, params)
+            if not np.all(np.isfinite(residual)):
+                continue
+            gain = here - logarithms(excerpt, residual)
+            if gain > best.gain:
+                best = Step(gain, params, residual - before)
+            if gain < -len(excerpt.problem.windows):  # worse by far: larger ones are no better
+                break
+    if best.gain <= 0.0:
+        return best
+    bounds = extended(current.hypothesis, effect, data).free
+    free = [Free(n, *bounds[n], 0.0, current.params[n]) for n in effect.parameters]
+    found = fit_windows(excerpt.problem, best.params, free)
+    gain = here - logarithms(excerpt, found.residual)
+    return best if gain < best.gain else Step(gain, found.params, found.residual - before)
+
+
+def chosen_by_step(steps: Sequence[Step]) -> list[int]:
+    """Those that help most, and those that do nearly the same as the first of them."""
+    order = sorted(range(len(steps)), key=lambda k: -steps[k].gain)
+    first = steps[order[0]].change
+    unit = first / max(float(np.linalg.norm(first)), 1e-300)
+    alike = [
+        k
+        for k in order
+        if float(unit @ steps[k].change) > TWINS * float(np.linalg.norm(steps[k].change))
+    ]
+    helping = [k for k in order if steps[k].gain > 0.0]
+    return list(dict.fromkeys(helping[:TRIED_BY_STEP] + [k for k in alike if k in helping]))
