@@ -61,6 +61,6 @@ def test_of_one_record_alone_it_is_the_linear_estimate_beside_all_that_is_free(
         rows = runs.record == number
         alone = type(others)(others.names, others.jacobian[rows], others.pull, others.off)
         reduced = project(alone, column[rows][:, None], [name])[:, 0]
-        full = np.concatenate([fitted.fit.residual[rows], alone.pull * alone.off])
+        full = np.concatenate([fitted.fit.residual[rows], alone.departure])
         value = fitted.params[name] - float(reduced @ full) / float(reduced @ reduced)
         assert each[run.name][0] == pytest.approx(value, rel=1e-6)

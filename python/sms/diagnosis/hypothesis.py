@@ -240,7 +240,8 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
             return fitted
         now = before.fitted_to(fitted.fit.residual)
         slopes = dict(zip(fitted.hypothesis.free, fitted.fit.jacobian.T, strict=True))
-        if np.all(np.abs(np.log(now.tau / before.tau)) < SETTLED):
+        felt = before.tau > 0.0
+        if np.all(np.abs(np.log(now.tau[felt] / before.tau[felt])) < SETTLED):
             break
         fitted = fit(fitted.hypothesis, runs, fitted.params, slopes=slopes, discrepancy=now)
     return fitted

@@ -156,10 +156,10 @@ def investigate(
     found = law = None
     if outcome.found:
         was, left = (excess(Left.by(f, data).validate) for f in (baseline, outcome.final))
-        progress("estimating sizes beside what no parameter explains", 0.8)
-        outcome = replace(outcome, final=_with_discrepancy(outcome.final, data))
         law = inconstancy_of(outcome, data, adequate or left < UNKNOWN_SHARE * was)
-        outcome = replace(outcome, named=law is None)
+        progress("estimating sizes beside what no parameter explains", 0.8)
+        final = _with_discrepancy(outcome.final, data)
+        outcome = replace(outcome, final=final, named=law is None)
     before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     if not adequate and not outcome.groups:
         # An error of the tables would take a part of what one record has of its own.

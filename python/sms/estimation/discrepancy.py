@@ -63,16 +63,20 @@ class Discrepancy:
         rows = tuple(slice(w.row, w.row + w.rows) for w in problem.windows)
         inputs = np.asarray(problem.hidden(params, KNOTS))
         products = np.array([inputs[r].T @ inputs[r] for r in rows])
-        size = np.sqrt(np.sum(inputs**2, axis=0).reshape(equations, -1).mean(axis=1))
-        level = float(np.linalg.norm(residual)) / np.sqrt(len(rows) * KNOTS)
-        first = cls(rows, inputs, products, level / np.maximum(size, 1e-300))
-        return first.fitted_to(residual)
+        blank = cls(rows, inputs, products, np.zeros(equations))
+        level = max(float(np.linalg.norm(residual)) / np.sqrt(len(rows) * KNOTS), LEAST)
+        return replace(blank, tau=blank.moving(level)).fitted_to(residual)
+
+    def moving(self, level: float) -> Array:
+        """(equations,): tau of inputs that each move the readings by so much; 0 where none does."""
+        squares = np.einsum("wii->i", self.products).reshape(len(self.tau), -1).mean(axis=1)
+        size = np.sqrt(squares)
+        return np.where(size > 0.0, level / np.where(size > 0.0, size, 1.0), 0.0)
 
     def fitted_to(self, residual: Array) -> Discrepancy:
         """With the standard deviations under which the residual (rows,) is most likely."""
         equations = len(self.tau)
-        size = np.sqrt(np.einsum("wii->i", self.products).reshape(equations, -1).mean(axis=1))
-        least = LEAST / np.maximum(size / np.sqrt(len(self.rows)), 1e-300)
+        least = self.moving(LEAST * np.sqrt(len(self.rows)))
         score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])[:, :, None]
         tau = np.maximum(self.tau, 30.0 * least)
         for _ in range(ITERATIONS):

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, unseen
+from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, refitted
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
 from sms.estimation.nuisance import Nuisance
 from sms.estimation.windows import Runs
@@ -19,7 +19,8 @@ from sms.estimation.windows import Runs
 
 def change_on_validation(trial: Fitted, current: Fitted, data: Data) -> float:
     """By how much the validation records change with an effect: mean square, in units of the declared noise."""
-    return float(np.mean((unseen(trial, data) - unseen(current, data)) ** 2))
+    change = refitted(trial, data).fit.residual - refitted(current, data).fit.residual
+    return float(np.mean(change**2))
 
 
 def objection(
