@@ -118,6 +118,25 @@ def test_a_fit_within_bounds_and_pulls_is_the_known_least_squares() -> None:
     assert found.at_bound == [False, True]
 
 
+def test_a_fit_from_an_old_jacobian_ends_where_an_exact_one_does() -> None:
+    random = draw("secants")
+    columns = random.normal(size=(200, 2)) * [0.1, 0.01]
+    target = columns @ [41.0, 560.0] + random.normal(size=200)
+    start = _core.Params(coulomb_force=38.0, viscous_friction=530.0)
+    free = [
+        Free("coulomb_force", 30.0, 60.0, 0.25, 38.0),
+        Free("viscous_friction", 480.0, 880.0, 0.001, 530.0),
+    ]
+    line = Line(columns, target)
+    exact = fit_windows(line, start, free)  # type: ignore[arg-type]
+    old = columns * random.uniform(0.7, 1.4, size=2)
+    found = fit_windows(line, start, free, slopes=old)  # type: ignore[arg-type]
+    assert found.converged
+    assert found.jacobian == pytest.approx(columns)
+    for name in ("coulomb_force", "viscous_friction"):
+        assert found.params[name] == pytest.approx(exact.params[name], rel=0.02)
+
+
 def test_screening_finds_the_column_that_is_there_and_none_where_there_is_none() -> None:
     random = draw("screening")
     n, blocks = 2000, np.repeat(np.arange(20), 100)

@@ -63,6 +63,18 @@ def test_a_healthy_bench_leaves_hardly_more_than_noise_and_a_leaking_one_more(
     assert left == [True, False]
 
 
+def test_an_excerpt_leaves_what_its_windows_leave_in_the_whole(tmp_path: Path) -> None:
+    rig = load_rig(write_bench(tmp_path, 4, {"piston_leakage": 3e-9}))
+    data = make_data(rig, [load_record(rig, source) for source in rig.records])
+    runs, random = data.identify, draw("windows of an excerpt")
+    chosen = sorted(random.choice(len(runs.problem.windows), 3, replace=False).tolist())
+    whole = energies(runs, runs.problem.evaluate(rig.start())[0])[chosen]
+    excerpt = runs.excerpt(chosen)
+    assert [w.record for w in excerpt.problem.windows] == [0, 1, 2]
+    alone = energies(excerpt, excerpt.problem.evaluate(rig.start())[0])
+    assert np.log1p(alone) == pytest.approx(np.log1p(whole), abs=0.35)
+
+
 def test_the_flow_tables_may_be_off_by_a_few_percent_and_no_more(tmp_path: Path) -> None:
     rig = load_rig(write_bench(tmp_path, 3, {}))
     data = make_data(rig, [load_record(rig, source) for source in rig.records])
@@ -96,7 +108,11 @@ def test_with_records_of_the_healthy_machine_a_change_within_what_is_declared_is
     ill.mkdir()
     healthy = load_rig(write_bench(well, 5, {}))
     file = write_bench(ill, 5, {"valve_centre": 5.015})
-    assert diagnose(file).verdict == "no-evidence"
+    alone = diagnose(file)
+    assert alone.verdict == "no-evidence"
+    hidden = {h.effect: h for h in alone.still_hidden}
+    assert 0.0 < hidden["valve_centre_offset"].size < hidden["valve_centre_offset"].plausible
+    assert "least sensitive to" in " ".join(alone.conclusion)
     text = file.read_text(encoding="utf-8")
     for number, source in enumerate(healthy.records):
         (ill / f"well_{number}.csv").write_bytes(source.file.read_bytes())
@@ -106,6 +122,11 @@ def test_with_records_of_the_healthy_machine_a_change_within_what_is_declared_is
     (cause,) = with_reference.causes
     assert cause.effect == "valve_centre_offset"
     assert cause.parameters[0].value == pytest.approx(5.015, abs=0.002)
+    for (
+        gain
+    ) in with_reference.gain:  # refitted to the record, either model leaves no more than held
+        assert gain.extended_refitted_rms <= 1.02 * gain.extended_rms
+        assert gain.baseline_refitted_rms <= 1.02 * gain.baseline_rms
 
 
 def test_a_command_is_held_where_it_goes_in_steps() -> None:
