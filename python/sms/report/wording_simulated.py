@@ -85,12 +85,14 @@ def remainder_in_words(left: Unexplained, units: Mapping[str, str]) -> str:
 
 def still_hidden_in_words(effects: Sequence[StillHidden]) -> str:
     """What could still be there: the effects that these records show least well, by what is plausible of them."""
-    least = sorted(effects, key=lambda e: -min(e.size / max(e.plausible, 1e-300), 1.0))[:3]
-    listed = "; ".join(
-        f"{e.title}, below {format_quantity(e.size, e.unit, e.parameter)}" for e in least
-    )
+    least = sorted(effects, key=lambda e: -e.size / max(e.plausible, 1e-300))
+    nothing = [e.title for e in least if e.size >= e.plausible][:3]
+    limited = [e for e in least if e.size < e.plausible][:3]
+    listed = [f"{title}, whatever its size" for title in nothing] + [
+        f"{e.title}, below {format_quantity(e.size, e.unit, e.parameter)}" for e in limited
+    ]
     return (
-        f"These records are least sensitive to: {listed}. The limits of all effects are in diagnosis.json "
+        f"These records do not exclude: {'; '.join(listed)}. The limits of all effects are in diagnosis.json "
         "(still_hidden)."
     )
 

@@ -16,6 +16,7 @@ from sms.estimation.run import Run
 from sms.estimation.run import make_run as make_any_run
 from sms.io.records import Record
 from sms.io.rig import Rig
+from sms.rigs.pneumatic import step_for
 
 SHORTEST, LONGEST, PER_RECORD = 1.0, 5.0, 5.0
 """s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does,
@@ -37,7 +38,7 @@ def make_problem(
         noise={s: noise[s] for s in OUTPUTS},
         chambers=rig.model.chambers,
         window=max(run.window or SHORTEST for run in runs),
-        longest_step=LONGEST_STEP,
+        longest_step=step_for(rig, LONGEST_STEP),
         threads=int(os.environ.get("SMS_THREADS", "2")),
     )
 
