@@ -21,7 +21,10 @@ struct Jet {
   typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
 
   double a;
-  double v[N];
+  union {  // the derivatives, one by one and four at a time; GCC and clang allow to write one and read the other
+    double v[N];
+    Four w[N / 4];
+  };
 
   Jet() = default;
   Jet(double value) : a(value) {  // NOLINT(google-explicit-constructor): a constant is a number
@@ -32,8 +35,8 @@ struct Jet {
   // Number `direction` of the independent ones.
   Jet(double value, int direction) : Jet(value) { v[direction] = 1.0; }
 
-  Four& four(int k) { return *reinterpret_cast<Four*>(v + 4 * k); }
-  const Four& four(int k) const { return *reinterpret_cast<const Four*>(v + 4 * k); }
+  Four& four(int k) { return w[k]; }
+  const Four& four(int k) const { return w[k]; }
 
   Jet& operator+=(const Jet& g) { return *this = *this + g; }
   Jet& operator-=(const Jet& g) { return *this = *this - g; }
