@@ -77,7 +77,8 @@ std::unique_ptr<TankPlantProblem> make_tank_plant_problem(std::vector<est::TankP
                                                           double longest_step, int threads) {
   const est::TankNoise sizes{noise.at("tank_pressure"), noise.at("tank_temperature"), noise.at("supply_pressure")};
   return std::make_unique<TankPlantProblem>(
-      est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", "iso_0_4_mpa", chambers), longest_step),
+      est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", "iso_0_4_mpa", chambers),
+                     longest_step),
       est::WindowOptions{window, kRunUp, threads});
 }
 

@@ -31,10 +31,9 @@ inline std::vector<std::pair<int, double>> conditions_of(const std::map<std::str
 
 inline sms::ValveLaw valve_law_of(const std::string& valve) {
   using sms::ValveLaw;
-  return choice<ValveLaw>("valve", valve,
-                          {{"iso_0_4_mpa", ValveLaw::iso_0_4_mpa},
-                           {"iso_0_2_mpa", ValveLaw::iso_0_2_mpa},
-                           {"classic", ValveLaw::classic}});
+  return choice<ValveLaw>(
+      "valve", valve,
+      {{"iso_0_4_mpa", ValveLaw::iso_0_4_mpa}, {"iso_0_2_mpa", ValveLaw::iso_0_2_mpa}, {"classic", ValveLaw::classic}});
 }
 
 inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string& valve, const std::string& chambers) {
