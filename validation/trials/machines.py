@@ -24,7 +24,7 @@ from sms.cluster import call_from, client_of
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
 from sms.diagnosis.adequacy.subset_estimates import found_value
 from sms.diagnosis.effects.catalogue import Effect, effects_of
-from sms.diagnosis.hypothesis import fit
+from sms.diagnosis.hypothesis import fit, fit_with_discrepancy
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.simulated import Case, investigate
@@ -186,14 +186,18 @@ def achievable(case: Case, hidden: Sequence[str]) -> float | None:
         return taken(case, case.after)
     alone = [m for c in classes for m in c if key_of(m.effect) == hidden[0]]
     if len(classes) == len(hidden) == len(alone) == 1:
-        return taken(case, lack_of_fit(alone[0].fitted, case.data))
+        alike = alone[0].fitted
+        final = fit_with_discrepancy(alike.hypothesis, case.data.identify, alike.params)
+        return taken(case, lack_of_fit(final, case.data))
     hypothesis = case.baseline.hypothesis
     start = case.baseline.params.copy()
     for key in hidden:
         hypothesis = hypothesis.with_effect(effects[key])
         if (step := effects[key].step) is not None:  # without a slope at its neutral value
             start[effects[key].parameters[0]] = step
-    return taken(case, lack_of_fit(fit(hypothesis, case.data.identify, start), case.data))
+    plain = fit(hypothesis, case.data.identify, start)
+    final = fit_with_discrepancy(hypothesis, case.data.identify, plain.params)
+    return taken(case, lack_of_fit(final, case.data))
 
 
 # ---- many ------------------------------------------------------------
