@@ -18,7 +18,7 @@ from sms.diagnosis.localisation.activity import activity, own_signals
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.simulated import investigate
-from sms.diagnosis.thresholds import KNOTS
+from sms.estimation.discrepancy import KNOTS
 from sms.estimation.windows import Runs
 from sms.io.rig import load_rig
 

@@ -124,8 +124,6 @@ DIFFERS_BY = 0.4
 
 # ---- Unknown inputs --------------------------------------------------------------------------------
 
-KNOTS = 21
-"""Knots per window of 1 s, 50 ms apart. Run time: the noise hides anything faster."""
 PIECES = 7
 """Values of a function of one signal. Judgement."""
 MOVES = 20.0

@@ -13,10 +13,10 @@ import numpy as np
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
 from sms.diagnosis.result import StillHidden
+from sms.diagnosis.selection.candidates import room_of
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.thresholds import DETECTION
 from sms.estimation.nuisance import project
-from sms.parameters import common_parameter
 
 
 def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple[StillHidden, ...]:
@@ -32,13 +32,9 @@ def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple
     least = np.maximum(DETECTION * level, np.sqrt(2.0 * runs.kind.honest[0] * rows))
     found = []
     for effect, name, own in zip(effects, names, size, strict=True):
-        reference = data.rig.declared(common_parameter(name)).value
-        low, high = (abs(end) for end in effect.plausible_range(reference))
-        shift = float(least / max(own, 1e-300))
-        if effect.kind == "shifted":
-            low, high = (abs(end - reference) for end in effect.plausible_range(reference))
-        unit = data.rig.table[name].unit
+        largest = max(abs(end) for end in room_of(effect, fitted, data.rig))
+        shift, unit = float(least / max(own, 1e-300)), data.rig.table[name].unit
         found.append(
-            StillHidden(effect.id, effect.signal, effect.title, name, shift, unit, max(low, high))
+            StillHidden(effect.id, effect.signal, effect.title, name, shift, unit, largest)
         )
     return tuple(found)

@@ -20,8 +20,9 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array, Index
 from sms.diagnosis.result import Hidden, Shape
-from sms.diagnosis.thresholds import CURVE_RIDGE, DRAWS, KNOTS, MOST_ROWS, MOVES, PIECES
+from sms.diagnosis.thresholds import CURVE_RIDGE, DRAWS, MOST_ROWS, MOVES, PIECES
 from sms.estimation.block_statistics import sum_by
+from sms.estimation.discrepancy import KNOTS
 from sms.estimation.nuisance import Nuisance
 from sms.estimation.windows import Runs
 from sms.io.signals import LEGS
