@@ -114,7 +114,7 @@ class SimulatedController final : public ValveDrive<S> {
         window_(window),
         grid_(grid),
         h_(h),
-        late_((p.command_delay + tube_delay(p)) / h),
+        late_(delay_to_chamber(p) / h),
         hidden_(hidden),
         noise_(noise),
         begins_(grid.begins(window.first, record.step)),

@@ -26,7 +26,7 @@ void BenchEquations::errors(Params<S> params, S* out) const {
   const Params<S>& p = bench.params;
   const ActuatorSignals& signals = signals_.actuator;
   const double step = signals_.step;
-  const S late = p.command_delay / S(step);
+  const S late = delay_to_chamber(p) / S(step);
 
   ActuatorTruth<S> now = actuator_truth(p, signals, 0, step);
   BenchState<S> state = measured_begin(p, now), rate{};

@@ -84,7 +84,7 @@ void PlatformEquations::errors(const LegParams<S>& params, S* out) const {
       hold_to(truth, state.leg[i]);
       state.leg[i].actuator.supply_pressure = reservoir(i) + beside;
       state.leg[i].actuator.spool = spool_at_sample(p, volts, k, step);
-      command(i) = detail::command_at<S>(volts, S(k) - p.command_delay / S(step));
+      command(i) = detail::command_at<S>(volts, S(k) - delay_to_chamber(p) / S(step));
       measured(i) = truth.extension.second;
       aside(i) = truth.extension.value - place.extension(i);
     }

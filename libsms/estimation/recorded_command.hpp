@@ -23,7 +23,7 @@ class ValveDrive {
   virtual S* readings(int sample, S* out) const = 0;
 };
 
-// `command_delay` late, straight from sample to sample or held.
+// `delay_to_chamber` late, straight from sample to sample or held.
 template <typename S>
 class RecordedCommand final : public ValveDrive<S> {
  public:
@@ -32,7 +32,7 @@ class RecordedCommand final : public ValveDrive<S> {
                   double record_step, int first, int steps, const S& h)
       : p_(p),
         laws_(laws),
-        voltage_(command, hold, steps, p.command_delay / S(record_step)),
+        voltage_(command, hold, steps, delay_to_chamber(p) / S(record_step)),
         first_(first),
         steps_(steps),
         h_(h) {}

@@ -42,7 +42,7 @@ void TankEquations::errors(Params<S> params, S* out) const {
   const Tank<S> tank{params, laws_};
   const Params<S>& p = tank.params;
   const double step = signals_.step;
-  const S late = p.command_delay / S(step);
+  const S late = delay_to_chamber(p) / S(step);
   const SensorErrors<S> gauge = tank_pressure_sensor(p);
 
   TankState<S> state = tank_at_rest<S>(p, S(0)), rate;

@@ -48,7 +48,7 @@ Eigen::VectorXd TankPlant::state(const Params<double>& params, const Window& win
   const TankPlantRecord& record = of(window.record);
   const Tank<double> tank = tank_of(params, record);
   const int steps = detail::steps_over(record.step, longest_step_);
-  RecordedVoltage<double> command(record.command, record.hold, steps, tank.params.command_delay / record.step);
+  RecordedVoltage<double> command(record.command, record.hold, steps, delay_to_chamber(tank.params) / record.step);
   const TankState<double> state =
       begin(tank, start.data(), command.spool(tank.params, window.first, record.step / steps));
   return vector_of(state);

@@ -137,7 +137,7 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   const int steps = detail::steps_over(sample, longest_step_);
   const S h(sample / steps);
   const HiddenInputs<S> pushes(hidden, knots, window.samples);
-  RecordedVoltage<S> command(record.command, record.hold, steps, p.command_delay / S(sample));
+  RecordedVoltage<S> command(record.command, record.hold, steps, delay_to_chamber(p) / S(sample));
   TankState<S> state = begin(tank, start, command.spool(p, window.first, h));
 
   TankTerms<S> t{};

@@ -94,7 +94,12 @@ TEST_CASE("effects act as they say") {
   p.pressure_friction = 1e-5;
   sms::Piston<double> s = {0.2, 0.1, 0.0, 286.0e3, 186.0e3};  // 2 and 1 bar above ambient
   CHECK(sms::friction(p, s) == doctest::Approx(38.0 + 3.0));
-  p.pressure_friction = 0.0;
+  sms::Piston<double> starting = {0.2, 0.1, 1e6, 286.0e3, 186.0e3};
+  const double starts = sms::friction(p, starting);
+  p.pressure_stiction = p.pressure_friction / p.coulomb_force;  // all dry friction grows alike: 38 N by 3 N
+  CHECK(sms::friction(p, s) == doctest::Approx(38.0 + 3.0));
+  CHECK(sms::friction(p, starting) == doctest::Approx(starts + 3.0 / 38.0 * (p.stiction_force - p.coulomb_force)));
+  p.pressure_friction = p.pressure_stiction = 0.0;
   p.direction_friction = 5.0;
   CHECK(sms::friction(p, s) == doctest::Approx(43.0));
   s.velocity = -0.1;

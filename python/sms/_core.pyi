@@ -1406,6 +1406,14 @@ class Params:
     def pressure_friction(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def pressure_stiction(self) -> float:
+        """
+        pressure_dependent_friction: relative growth of static less Coulomb friction per pascal of the same pressures; pressure_friction / coulomb_force where all dry friction grows alike [1/Pa]; neutral
+        """
+    @pressure_stiction.setter
+    def pressure_stiction(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def proportional_gain(self) -> float:
         """
         G_P of eq. 7.4 [V/m]; published, section 7.3.6
@@ -1948,6 +1956,14 @@ class Params:
         """
     @tube_length.setter
     def tube_length(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def tube_loss_factor(self) -> float:
+        """
+        loss in the tube over that of a smooth straight one: fittings and bends add to it [1]; neutral
+        """
+    @tube_loss_factor.setter
+    def tube_loss_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def valve_centre(self) -> float:

@@ -66,6 +66,7 @@ def run(
     k, between = np.zeros((4, STATES)), np.zeros(STATES)
     weight = np.array([0.0, 0.5, 0.5, 1.0])
     seat, play = y[2], 0.0
+    late = p.command_delay + p.tube_length / np.sqrt(p.kappa * p.gas_constant * p.air_temperature)
     states[0] = y
     for sample in range(commands.size - 1):
         for step in range(STEPS):
@@ -77,7 +78,7 @@ def run(
                 for j in range(STATES):
                     between[j] = y[j] + weight[stage] * dt * k[max(stage - 1, 0), j]
                 now = t + weight[stage] * dt
-                u = command_at(commands, now - p.command_delay)
+                u = command_at(commands, now - late)
                 derivative(p, start_time + now, map_, between, play, u, k[stage])
             for j in range(STATES):
                 y[j] += dt / 6.0 * (k[0, j] + 2.0 * k[1, j] + 2.0 * k[2, j] + k[3, j])

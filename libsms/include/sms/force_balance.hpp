@@ -65,7 +65,7 @@ FrictionBranches<S> friction_branches(const Params<S>& p, const Piston<S>& pisto
   using std::abs;
   const S& v = piston.velocity;
   const S ramp = friction_ramp(p, v);
-  const S factor = position_factor(p, piston);
+  const S factor = excess_factor(p, piston);
   const S starting =
       ramp * seal_force(p, piston, p.coulomb_force) + abs(ramp) * (p.viscous_friction * v + p.direction_friction);
   const S change =

@@ -23,7 +23,8 @@
 // (pi / (2 eps)) [F_C2], which the sine carries exactly, derivatives included.
 //
 // Three effects, absent until data switches them on (their parameters are zero):
-//   pressure_dependent_friction   the lips are pressed on the bore by the chamber pressures
+//   pressure_dependent_friction   the lips are pressed on the bore by the chamber pressures: Coulomb friction grows, and
+//                                 what static friction is more than that (pressure_stiction)
 //   direction_dependent_friction  a lip seal rubs more one way than the other
 //   position_dependent_friction   the bore is not equally wide, the rod not quite straight
 #pragma once
@@ -111,11 +112,24 @@ S position_factor(const Params<S>& p, const Piston<S>& piston) {
   return S(1) + p.position_friction * beyond_mid_stroke;
 }
 
+// p_a + p_b - 2 p_A, what presses the lips on the bore, Pa
+template <typename S>
+S lip_pressure(const Params<S>& p, const Piston<S>& piston) {
+  return piston.pressure_lower + piston.pressure_upper - S(2) * p.ambient_pressure;
+}
+
+// Growth of what dry friction is more than the Coulomb force.
+template <typename S>
+S excess_factor(const Params<S>& p, const Piston<S>& piston) {
+  return position_factor(p, piston) + p.pressure_stiction * lip_pressure(p, piston);
+}
+
 // What the seals make of their dry friction (Coulomb and Stribeck), N: the effects that act on it, and eq. 6.6.
 template <typename S>
 S seal_force(const Params<S>& p, const Piston<S>& piston, const S& dry) {
-  const S pressing = piston.pressure_lower + piston.pressure_upper - S(2) * p.ambient_pressure;
-  return dry * position_factor(p, piston) + p.pressure_friction * pressing + exponential_friction(p, piston.velocity);
+  const S pressed = p.pressure_friction + p.pressure_stiction * (dry - p.coulomb_force);
+  return dry * position_factor(p, piston) + pressed * lip_pressure(p, piston) +
+         exponential_friction(p, piston.velocity);
 }
 
 // Eq. 6.2 and 6.5 with a given Stribeck velocity, m/s.

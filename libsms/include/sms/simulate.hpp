@@ -120,7 +120,7 @@ sms_status begin_simulation(const typename Plant::State& state, const typename P
   sms_status status = begin_run(s.system, S(0), state, s.run);
   for (int i = 0; i < Plant::legs; ++i) {
     const Params<S>& of_leg = params_of(s.plant, i);
-    const S delay = of_leg.command_delay + tube_delay(of_leg);
+    const S delay = delay_to_chamber(of_leg);
     s.delay_periods[i] = static_cast<int>(delay / s.period);
     s.delay_rest[i] = delay - S(s.delay_periods[i]) * s.period;
     status = status == SMS_OK && s.delay_periods[i] >= longest_delay() ? SMS_OUT_OF_RANGE : status;

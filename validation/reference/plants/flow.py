@@ -167,4 +167,4 @@ def tube_share(p: Numbers, flow: float, pressure: float) -> float:
     if reynolds > 1190.0:
         resistance *= (reynolds / 1190.0) ** 0.75
     exponent = resistance * p.gas_constant * p.air_temperature * p.tube_length
-    return float(np.exp(-exponent / (2.0 * pressure * sound)))
+    return float(np.exp(-p.tube_loss_factor * exponent / (2.0 * pressure * sound)))

@@ -21,7 +21,8 @@ def seal(p: Numbers, dry: float, x: float, v: float, lower: float, upper: float)
     pressing = lower + upper - 2.0 * p.ambient_pressure
     grown = dry * (1.0 + p.position_friction * (x - 0.5 * p.stroke))
     upturn = exp(min(50.0, p.exponential_friction_rate * abs(v))) - 1.0
-    return grown + p.pressure_friction * pressing + p.exponential_friction_force * upturn
+    pressed = p.pressure_friction + p.pressure_stiction * (dry - p.coulomb_force)
+    return grown + pressed * pressing + p.exponential_friction_force * upturn
 
 
 @compiled

@@ -27,6 +27,7 @@ class Numbers(NamedTuple):
     exponential_friction_rate: float
     stiction_velocity: float
     pressure_friction: float
+    pressure_stiction: float
     direction_friction: float
     position_friction: float
     gas_constant: float
@@ -68,6 +69,7 @@ class Numbers(NamedTuple):
     chamber_leakage_upper: float
     tube_length: float
     tube_diameter: float
+    tube_loss_factor: float
     tank_volume: float
     tank_wall_area: float
     bristle_stiffness: float
