@@ -1822,6 +1822,14 @@ class Params:
     def tank_flow_change(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def tank_inflow_heat_change(self) -> float:
+        """
+        polytropic_index of a tank: relative change of the ratio of heat capacities for air that enters, against that of the tank on which the valve's tables were measured [1]; neutral
+        """
+    @tank_inflow_heat_change.setter
+    def tank_inflow_heat_change(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def tank_initial_pressure(self) -> float:
         """
         pressure in the tank before the valve opens, absolute [Pa]; assumed: set by the test

@@ -86,7 +86,7 @@ def write_bench(
         if in_loop:
             signals["setpoint"] = wanted[::EVERY]
         for name, size in NOISE.items():
-            clean = run[name][::EVERY]
+            clean = run.reading(name)[::EVERY]
             signals[name] = clean + random.normal(0.0, size, clean.size)
         write_record(folder / f"run{number}.csv", signals)
         text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
@@ -157,7 +157,7 @@ def write_platform(
             if in_loop:
                 signals[f"setpoint_{leg}"] = setpoints[::EVERY, leg - 1]
             for name, (size, _) in PLATFORM_NOISE.items():
-                clean = run[f"{name}_{leg}"][::EVERY]
+                clean = run.reading(f"{name}_{leg}")[::EVERY]
                 signals[f"{name}_{leg}"] = clean + random.normal(0.0, size, clean.size)
         write_record(folder / f"run{number}.csv", signals)
         text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'

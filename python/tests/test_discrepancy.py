@@ -53,7 +53,7 @@ def test_whitening_undoes_the_covariance_and_colouring_undoes_whitening() -> Non
     problem = drawn(random)
     residual = residual_of(problem, (1.0, 0.3), random)
     found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
-    root = found.whitener()
+    root = found.whitener
     values = random.normal(size=(len(residual), 3))
     assert root.colour(root.whiten(values)) == pytest.approx(values, abs=1e-9)
     first = found.rows[0]
@@ -76,7 +76,7 @@ def test_the_sizes_of_the_inputs_are_found_and_that_of_one_that_is_not_there_goe
     found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
     assert found.tau[0] == pytest.approx(true, rel=0.4)  # 252 draws, five standard errors
     assert found.tau[1] < 0.1 * true + 0.2  # and falling with every iteration
-    white = found.whitener().whiten(residual)
+    white = found.whitener.whiten(residual)
     assert np.mean(white**2) == pytest.approx(1.0, abs=0.3)
 
 
@@ -109,7 +109,7 @@ def test_the_standard_error_is_that_of_the_estimates_where_noise_alone_would_cla
         left = residual_of(problem, (1.0, 0.5), random)
         line = Line(column, 38.0 * column - left)
         found = Discrepancy.of(problem, _core.Params(), EQUATIONS, left)
-        root = found.whitener()
+        root = found.whitener
         fit = fit_windows(
             Whitened(line, root),  # type: ignore[arg-type]
             _core.Params(coulomb_force=38.0),

@@ -18,13 +18,20 @@ from sms.diagnosis.adequacy.residual_energy import (
     tolerated,
 )
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import FLOW_MAP, baseline_hypothesis, fit
+from sms.diagnosis.hypothesis import (
+    FLOW_MAP,
+    baseline_hypothesis,
+    cost_of_departure,
+    fit,
+    from_reference,
+)
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import Unexplained
+from sms.estimation.least_squares import changed
 from sms.estimation.run import is_held
 from sms.io.check import check_record
 from sms.io.records import load_record
-from sms.io.rig import load_rig
+from sms.io.rig import Rig, load_rig
 
 from validation.random_cases import draw
 from validation.trials.foreign import judged
@@ -99,25 +106,77 @@ def test_the_answer_says_what_is_left_beside_the_cause(tmp_path: Path) -> None:
     assert left.sentence in answer.conclusion
 
 
+def well_and_ill(folder: Path, seed: int, effects: dict[str, float]) -> tuple[Rig, Path]:
+    """A bench when it was well, and the rig file of its records afterwards."""
+    for name in ("well", "ill"):
+        (folder / name).mkdir()
+    return load_rig(write_bench(folder / "well", seed, {})), write_bench(
+        folder / "ill", seed, effects
+    )
+
+
+def add_reference(file: Path, healthy: Rig) -> None:
+    """The records of one rig as reference records of another."""
+    text = file.read_text(encoding="utf-8")
+    for number, source in enumerate(healthy.records):
+        (file.parent / f"well_{number}.csv").write_bytes(source.file.read_bytes())
+        text += f'\n[[records]]\nfile = "well_{number}.csv"\nname = "well {number}"\nrole = "reference"\n'
+    file.write_text(text, encoding="utf-8")
+
+
+def test_reference_records_tell_combinations_of_numbers_better_than_each(tmp_path: Path) -> None:
+    """The flow at an opening is its gain times its table: known together, whatever each of them is."""
+    healthy, file = well_and_ill(tmp_path, 6, {"sensor_gain_extension": 0.04})
+    add_reference(file, healthy)
+    rig = load_rig(file)
+    data = make_data(rig, [load_record(rig, source) for source in rig.records])
+    hypothesis, data = from_reference(baseline_hypothesis(data, effects_of(rig)), data)
+    joint = hypothesis.joint
+    assert joint is not None and data.healthy is not None and data.healthy.inflation >= 1.0
+    k = joint.names.index("mass_flow_gain")
+    alone, beside_others = joint.covariance[k, k], 1.0 / np.linalg.inv(joint.covariance)[k, k]
+    assert beside_others < 0.2 * alone
+    # Other numbers may make up for the gain of the sensor, but moving them costs more than that gain does.
+    allowed = data.allowed(data.identify)
+    plain = fit(hypothesis, data.identify, discrepancy=allowed)
+    (gain,) = (e for e in effects_of(rig) if e.key == "sensor_gain of extension")
+    start = changed(hypothesis.start, ["sensor_gain_extension"], np.array([0.04]))
+    right = fit(hypothesis.with_effect(gain), data.identify, start, discrepancy=allowed)
+    by_chance = data.healthy.inflation * len(hypothesis.known)
+    assert cost_of_departure(right) < 2.0 * by_chance
+    energy = [Left.by(model, data).identify for model in (plain, right)]
+    taken = float(np.mean(energy[0] - energy[1])) * data.identify.problem.rows
+    assert taken > 25.0 * data.healthy.inflation  # five standard errors
+    assert right.params["sensor_gain_extension"] == pytest.approx(0.04, abs=0.01)
+
+
+def test_with_reference_records_a_sensor_gain_is_found_that_other_numbers_can_make_up_for(
+    tmp_path: Path,
+) -> None:
+    healthy, file = well_and_ill(tmp_path, 6, {"sensor_gain_extension": 0.04})
+    add_reference(file, healthy)
+    (cause,) = diagnose(file).causes
+    assert "sensor_gain" in cause.members
+    sizes = [
+        p
+        for owner in (cause, *cause.alternatives)
+        for p in owner.parameters
+        if p.name == "sensor_gain_extension"
+    ]
+    assert [p.value for p in sizes] == [pytest.approx(0.04, abs=0.01)]
+
+
 def test_with_records_of_the_healthy_machine_a_change_within_what_is_declared_is_found(
     tmp_path: Path,
 ) -> None:
     """A centre 15 mV off is within what is declared, and more than it can have moved since the machine was well."""
-    well, ill = tmp_path / "well", tmp_path / "ill"
-    well.mkdir()
-    ill.mkdir()
-    healthy = load_rig(write_bench(well, 5, {}))
-    file = write_bench(ill, 5, {"valve_centre": 5.015})
+    healthy, file = well_and_ill(tmp_path, 5, {"valve_centre": 5.015})
     alone = diagnose(file)
     assert alone.verdict == "no-evidence"
     hidden = {h.effect: h for h in alone.still_hidden}
     assert 0.0 < hidden["valve_centre_offset"].size < hidden["valve_centre_offset"].plausible
     assert "do not exclude" in " ".join(alone.conclusion)
-    text = file.read_text(encoding="utf-8")
-    for number, source in enumerate(healthy.records):
-        (ill / f"well_{number}.csv").write_bytes(source.file.read_bytes())
-        text += f'\n[[records]]\nfile = "well_{number}.csv"\nname = "well {number}"\nrole = "reference"\n'
-    file.write_text(text, encoding="utf-8")
+    add_reference(file, healthy)
     with_reference = diagnose(file)
     (cause,) = with_reference.causes
     assert cause.effect == "valve_centre_offset"

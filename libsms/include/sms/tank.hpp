@@ -6,7 +6,11 @@
 // or, with the full energy equation, pressure and temperature with the heat of the wall. The flow is what the tables say:
 // they were measured on a tank, and mass_flow_gain belongs to a cylinder.
 //
-// Effects, absent until data switches them on: tank_flow_change (flow_conductance), exhaust_restriction, valve_leakage,
+// What the tables and eq. 5.15 say together is how fast the tank of the flow test charged: with another alpha_i the tables
+// are rescaled, and the tank charges as before. Another tank, with more or less heat through its wall, does not:
+// tank_inflow_heat_change (polytropic_index).
+//
+// Other effects, absent until data switches them on: tank_flow_change (flow_conductance), exhaust_restriction, valve_leakage,
 // the leak of the lower chamber's port (chamber_leakage_lower), tube, supply_droop, and heat_share: between the source's
 // isothermal tank (0) and the full energy equation with heat through the wall (1). Valid for p, T > 0.
 #pragma once
@@ -82,6 +86,7 @@ void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) 
   }
   t.flow = {S(0), S(0), S(0)};
   add_flow(t.flow, t.feed, t.air, supply);
+  t.flow.in_heat *= S(1) + p.tank_inflow_heat_change;
   add_flow<S>(t.flow, -t.vent, t.air, outside);
   add_flow<S>(t.flow, p.chamber_leakage_lower * (outside.pressure - t.air.pressure), t.air, outside);
 }

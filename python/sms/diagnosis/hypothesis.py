@@ -33,8 +33,10 @@ scatter is hardly known itself. Judgement."""
 REFIT_STEPS, REFIT_NEAR = 3, 1
 """Jacobians of least squares on records that were not fitted: what is known moves little there; and with those of a
 model nearby to begin with. Run time."""
-SAME_MACHINE = 0.1
-"""Of what is declared: by how much a number may differ between a day when the machine was well and today. Judgement."""
+SAME_MACHINE = 0.03
+"""Of what is declared: by how much a number may differ between a day when the machine was well and today. Judgement: an
+uncertainty is what is not known of a number, and hardly any of that is its change.
+"""
 WIDE = 3.0
 """Half widths that a map may be off somewhere: what is declared of a map is that of most of its values."""
 
@@ -56,6 +58,8 @@ class Hypothesis:
     """How the errors of what is in `known` go together; None: independent."""
     sample: float = 1.0
     """Standard deviation of a residual: 1 where they are in units of the noise, else that of the declared model."""
+    inflation: float = 1.0
+    """How many times larger the variance of an estimate is than residuals as they are counted have it."""
 
     @property
     def with_exact_maps(self) -> Hypothesis:
@@ -66,7 +70,10 @@ class Hypothesis:
     def with_effect(
         self, effect: Effect, plausible: tuple[float, float] | None = None
     ) -> Hypothesis:
-        """The effect's parameters freed within their bounds, its first one within what is plausible if given."""
+        """The effect's parameters freed within their bounds, its first one within what is plausible if given.
+
+        The first one is its size; of the others it is known what is declared of them (the critical ratio of a leak).
+        """
         wide = {
             name: (self.table[name].lower, self.table[name].upper) for name in effect.parameters
         }
@@ -74,6 +81,9 @@ class Hypothesis:
             low, high = wide[effect.parameters[0]]
             wide[effect.parameters[0]] = max(low, plausible[0]), min(high, plausible[1])
         known = {name: u for name, u in self.known.items() if name not in wide}
+        for name in effect.parameters[1:]:
+            if (declared := self.known.get(name, self.table[name].uncertainty)) > 0.0:
+                known[name] = declared
         return replace(self, free=self.free | wide, known=known, causes=(*self.causes, effect))
 
 
@@ -96,7 +106,7 @@ class Fitted:
 
     def whiten(self, values: Array) -> Array:
         """Residuals or sensitivities (rows, ...) of the records it was fitted to, as independent as noise."""
-        return values if self.discrepancy is None else self.discrepancy.whitener().whiten(values)
+        return values if self.discrepancy is None else self.discrepancy.whitener.whiten(values)
 
     def standard_error(self, name: str) -> float:
         k = list(self.hypothesis.free).index(name)
@@ -108,6 +118,23 @@ class Fitted:
         return [
             n for n, held in zip(self.hypothesis.free, self.fit.at_bound, strict=True) if not held
         ]
+
+
+@dataclass(frozen=True)
+class Healthy:
+    """What the model of a machine leaves when it is well, as reference records tell. Arrays (channels,)."""
+
+    identify: Discrepancy
+    """On the records that are fitted."""
+    validate: Discrepancy
+    level: Array
+    """Mean square of a residual, in units of the noise and of that discrepancy."""
+    plain: Array
+    """The same in units of the noise alone."""
+    spread: Array
+    """By how much that of one record is above the level, as a share of it."""
+    inflation: float
+    """How many times larger the variance of an estimate is by the scatter of blocks than by such residuals."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +152,14 @@ class Data:
     """What `unseen` has worked out already."""
     refitted_of: dict[int, tuple[Fitted, Fitted]] = field(default_factory=dict, repr=False)
     """What `refitted` has worked out already."""
+    healthy: Healthy | None = None
+    """What the model of the healthy machine leaves anyway; None without reference records."""
+
+    def allowed(self, runs: Runs) -> Discrepancy | None:
+        """The healthy machine's own discrepancy on the records of a role; None where none told."""
+        if self.healthy is None:
+            return None
+        return self.healthy.identify if runs is self.identify else self.healthy.validate
 
 
 # ---- fits ----------------------------------------------------------------------------------------
@@ -164,28 +199,69 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     return Hypothesis(start, movable, uncertain, table=rig.table, sample=sample)
 
 
-def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Fitted]:
-    """What records of the healthy machine tell of it: where its numbers lie, and how much nearer than was declared.
+def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data]:
+    """What records of the healthy machine tell of it: where its numbers lie and how nearly, and what its model leaves
+    anyway. The others are then asked what has changed.
 
-    The others are then asked what has changed. Such records tell combinations of the numbers far better than each (the
-    flow at an opening, not its gain and its table apart), so what they tell is a covariance. To its diagonal a tenth of
-    what was declared is added: a machine is not quite the same from day to day.
+    Such records tell combinations of the numbers far better than each (the flow at an opening, not its gain and its
+    table apart), so what they tell is a covariance. It is wider than noise alone would have it, by as much as the
+    scatter between blocks is (`Healthy.inflation`); a number's change from day to day is added.
     """
     assert data.reference is not None
-    h, healthy = hypothesis, fit_with_discrepancy(hypothesis, data.reference)
+    h, runs = hypothesis, data.reference
+    fitted = fit_with_discrepancy(h, runs)
+    healthy = _healthy(fitted, data)
+    white = fitted.whiten(fitted.fit.jacobian)
+    pull = weights_of(h, list(h.free))
+    told = np.linalg.pinv(white.T @ white / healthy.inflation + pull.T @ pull, hermitian=True)
     names = [n for n in h.free if n in h.known]
     place = [list(h.free).index(n) for n in names]
-    declared = np.array([h.known[n] for n in names])
-    covariance = healthy.covariance[np.ix_(place, place)] + np.diag((SAME_MACHINE * declared) ** 2)
-    shrink = np.minimum(declared / np.sqrt(np.diag(covariance)), 1.0)
-    covariance *= np.outer(shrink, shrink)
-    start, free, known = h.start.copy(), dict(h.free), dict(h.known)
+    drift = np.diag([(SAME_MACHINE * h.known[n]) ** 2 for n in names])
+    covariance = np.asarray(told[np.ix_(place, place)] + drift)
+    start, free = h.start.copy(), dict(h.free)
+    for name in h.free:
+        start[name] = fitted.params[name]
     for name, variance in zip(names, np.diag(covariance), strict=True):
-        start[name], known[name] = healthy.params[name], float(np.sqrt(variance))
-        room, bounds = WIDE * known[name], h.table[name]
+        room, bounds = WIDE * float(np.sqrt(variance)), h.table[name]
         free[name] = (max(bounds.lower, start[name] - room), min(bounds.upper, start[name] + room))
+    known = h.known | dict(zip(names, map(float, np.sqrt(np.diag(covariance))), strict=True))
     joint = Joint(tuple(names), covariance)
-    return replace(h, start=start, free=free, known=known, joint=joint), healthy
+    told_by = replace(
+        h, start=start, free=free, known=known, joint=joint, inflation=healthy.inflation
+    )
+    return told_by, replace(data, healthy=healthy)
+
+
+def _healthy(fitted: Fitted, data: Data) -> Healthy:
+    """What a fit to the reference records leaves of them, carried over to the others."""
+    assert data.reference is not None and fitted.discrepancy is not None
+    runs, tau = data.reference, fitted.discrepancy.tau
+    white = fitted.whiten(np.column_stack([fitted.fit.jacobian, fitted.fit.residual]))
+    jacobian, residual = white[:, :-1], white[:, -1]
+    pull = weights_of(fitted.hypothesis, list(fitted.hypothesis.free))
+    noise = np.diag(np.linalg.pinv(jacobian.T @ jacobian + pull.T @ pull, hermitian=True))
+    blocks = np.diag(covariance_of(jacobian, residual, runs.block))
+    ratio = np.clip(blocks[noise > 0.0] / noise[noise > 0.0], 1.0, MOST_INFLATED**2)
+    level, plain = np.ones((2, len(data.identify.channels)))
+    spread = np.zeros(len(data.identify.channels))
+    for c, name in enumerate(data.identify.channels):
+        if name in runs.channels:
+            of_channel = runs.channel == runs.channels.index(name)
+            by_record = [
+                float(np.mean(residual[of_channel & (runs.record == r)] ** 2))
+                for r in range(len(runs.motions))
+            ]
+            level[c] = np.mean(residual[of_channel] ** 2)
+            plain[c] = np.mean(fitted.fit.residual[of_channel] ** 2)
+            spread[c] = max(by_record) / level[c] - 1.0
+    return Healthy(
+        data.identify.discrepancy_of(fitted.params, tau),
+        data.validate.discrepancy_of(fitted.params, tau),
+        level,
+        plain,
+        spread,
+        float(np.exp(np.mean(np.log(ratio)))),
+    )
 
 
 def fit(
@@ -257,8 +333,17 @@ def free_of(hypothesis: Hypothesis) -> list[Free]:
 
 
 def weights_of(hypothesis: Hypothesis, names: list[str]) -> Array:
-    """(names, names): rows that pull parameters to what is declared."""
-    return hypothesis.sample * pulls(names, hypothesis.known, hypothesis.joint)
+    """(names, names): rows that pull parameters to what is declared, beside residuals as they are counted."""
+    h = hypothesis
+    return h.sample * float(np.sqrt(h.inflation)) * pulls(names, h.known, h.joint)
+
+
+def cost_of_departure(fitted: Fitted) -> float:
+    """How far the values are from what is declared, as chi-square."""
+    h = fitted.hypothesis
+    names = list(h.free)
+    off = np.array([fitted.params[n] - h.start[n] for n in names])
+    return float(np.sum((weights_of(h, names) @ off) ** 2))
 
 
 def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
@@ -274,7 +359,7 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     white = fitted.whiten(np.column_stack([found.jacobian, found.residual]))
     jacobian, residual = white[:, :-1], white[:, -1]
     bread = np.linalg.pinv(jacobian.T @ jacobian + pull.T @ pull, hermitian=True)
-    noise = max(float(np.mean(residual**2)), 1e-12)
+    noise = max(float(np.mean(residual**2)), 1e-12) * fitted.hypothesis.inflation
     robust = covariance_of(jacobian, residual, runs.block) if pull.size else bread
     # With more parameters than windows the robust one has too low a rank: the larger of the two variances holds.
     by_noise, by_blocks = np.diag(noise * bread), np.diag(robust)
@@ -299,15 +384,21 @@ def refitted(fitted: Fitted, data: Data) -> Fitted:
     """The model on the validate records, its causes held."""
     if id(fitted) not in data.refitted_of:
         before = next((at for _, at in data.refitted_of.values()), None)
-        data.refitted_of[id(fitted)] = (fitted, refitted_on(fitted, data.validate, before))
+        data.refitted_of[id(fitted)] = (
+            fitted,
+            refitted_on(fitted, data.validate, before, data.allowed(data.validate)),
+        )
     return data.refitted_of[id(fitted)][1]
 
 
-def refitted_on(fitted: Fitted, runs: Runs, near: Fitted | None = None) -> Fitted:
+def refitted_on(
+    fitted: Fitted, runs: Runs, near: Fitted | None = None, allowed: Discrepancy | None = None
+) -> Fitted:
     """The model on other records: what is known may move there too (another day, another temperature), its causes are
     held. Whether its form is right is another question than how well its values predict (`unseen`).
 
-    near: another model on the same records, whose sensitivities to what is known will do to begin with.
+    near: another model on the same records, whose sensitivities to what is known will do to begin with. allowed: the
+    healthy machine's discrepancy on them.
     """
     h = fitted.hypothesis
     held = {n for cause in h.causes for n in cause.parameters}
@@ -319,11 +410,11 @@ def refitted_on(fitted: Fitted, runs: Runs, near: Fitted | None = None) -> Fitte
         {} if near is None else dict(zip(near.hypothesis.free, near.fit.jacobian.T, strict=True))
     )
     known_slopes = slopes if set(free) <= set(slopes) else None
-    if fitted.discrepancy is None:
-        steps = REFIT_STEPS if known_slopes is None else REFIT_NEAR
-        return fit(moved, runs, fitted.params, steps, known_slopes)
-    allowed = runs.discrepancy(fitted.params, residual_of(runs, fitted.params))
-    return fit(moved, runs, fitted.params, REFIT_STEPS, known_slopes, allowed)
+    if fitted.discrepancy is not None and allowed is None:
+        allowed = runs.discrepancy(fitted.params, residual_of(runs, fitted.params))
+        return fit(moved, runs, fitted.params, REFIT_STEPS, known_slopes, allowed)
+    steps = REFIT_STEPS if known_slopes is None else REFIT_NEAR
+    return fit(moved, runs, fitted.params, steps, known_slopes, allowed)
 
 
 def sensitivities(fitted: Fitted, runs: Runs, names: list[str]) -> Array:

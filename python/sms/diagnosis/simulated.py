@@ -19,9 +19,9 @@ from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency, inconsistency
 from sms.diagnosis.adequacy.residual_energy import (
     Left,
+    differs_when_well,
     energies,
     excess,
-    left_when_well,
     nothing_left,
     small,
     tolerated,
@@ -137,15 +137,13 @@ def investigate(
 ) -> Case:
     """Baseline, rounds and verdict: all that a trial needs."""
     progress("fitting the baseline", 0.05)
-    hypothesis, healthy = baseline_hypothesis(data, effects), None
+    hypothesis = baseline_hypothesis(data, effects)
     if data.reference is not None:
-        hypothesis, healthy = from_reference(hypothesis, data)
-    baseline = fit(hypothesis, data.identify)
+        hypothesis, data = from_reference(hypothesis, data)
+    baseline = fit(hypothesis, data.identify, discrepancy=data.allowed(data.identify))
     progress("looking which effects can be seen", 0.15)
     able, blind = identifiable(baseline, data, effects)
-    least = tolerated(baseline, data)
-    if healthy is not None and data.reference is not None:
-        least = left_when_well(healthy, data.reference)
+    least = tolerated(baseline, data) if data.healthy is None else differs_when_well(data)
 
     def enough(fitted: Fitted) -> bool:
         left = Left.by(fitted, data)
@@ -155,7 +153,7 @@ def investigate(
     adequate = enough(outcome.final)
     found = law = None
     if outcome.found:
-        was, left = (excess(Left.by(f, data).validate) for f in (baseline, outcome.final))
+        was, left = (Left.by(f, data).excess("validate") for f in (baseline, outcome.final))
         law = inconstancy_of(outcome, data, adequate or left < UNKNOWN_SHARE * was)
         progress("estimating sizes beside what no parameter explains", 0.8)
         final = _with_discrepancy(outcome.final, data)
@@ -171,6 +169,8 @@ def investigate(
 
 def _with_discrepancy(fitted: Fitted, data: Data) -> Fitted:
     """The same model, its values and their errors by generalised least squares."""
+    if (allowed := data.allowed(data.identify)) is not None:
+        return fit(fitted.hypothesis, data.identify, fitted.params, discrepancy=allowed)
     return fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
 
 
@@ -239,7 +239,7 @@ def _unexplained(case: Case, hidden: Hidden) -> Unexplained:
     found = Unexplained(
         rms(left),
         rms(floor),
-        rms(case.tolerated),
+        rms(_as_residual(case)),
         float(np.clip(share, 0.0, 1.0)),
         worth_a_word,
         hidden.equation,
@@ -249,6 +249,12 @@ def _unexplained(case: Case, hidden: Hidden) -> Unexplained:
     )
     units = {c: runs.kind.units[c] for c in runs.channels}
     return replace(found, sentence=remainder_in_words(found, units))
+
+
+def _as_residual(case: Case) -> Array:
+    """(channels,): what is tolerated, as mean square in units of the noise."""
+    healthy = case.data.healthy
+    return case.tolerated if healthy is None else healthy.plain * (1.0 + case.tolerated)
 
 
 def _with_words(answer: Diagnosis, case: Case, hidden: Hidden) -> Diagnosis:

@@ -85,9 +85,9 @@ TOLERATED = 0.1
 """Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description
 whose numbers are known to a few percent, and which then fits ten times better than that, is not called wrong.
 """
-WELL, LEAST_OF_NOISE = 1.5, 0.1
-"""Of the mean square that the model leaves on records of the healthy machine, and of the noise: what it may leave on
-others. Judgement: the machine is the same, the runs are not."""
+LEAST_OF_NOISE = 0.1
+"""Of the mean square that the model leaves on records of the healthy machine: what it may leave beyond that on others.
+Judgement: the machine is the same, the runs are not."""
 TWINS = 0.9
 """Cosine of two changes of all predictions from which two effects are one class, if neither is worse. Judgement."""
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -60,12 +61,17 @@ class Discrepancy:
         cls, problem: Shot, params: _core.Params, equations: int, residual: Array
     ) -> Discrepancy:
         """As likely as can be for the residual (rows,) of a model with these parameters."""
+        blank = cls.sized(problem, params, np.zeros(equations))
+        level = max(float(np.linalg.norm(residual)) / np.sqrt(len(blank.rows) * KNOTS), LEAST)
+        return replace(blank, tau=blank.moving(level)).fitted_to(residual)
+
+    @classmethod
+    def sized(cls, problem: Shot, params: _core.Params, tau: Array) -> Discrepancy:
+        """With standard deviations (equations,) that are known from elsewhere."""
         rows = tuple(slice(w.row, w.row + w.rows) for w in problem.windows)
         inputs = np.asarray(problem.hidden(params, KNOTS))
         products = np.array([inputs[r].T @ inputs[r] for r in rows])
-        blank = cls(rows, inputs, products, np.zeros(equations))
-        level = max(float(np.linalg.norm(residual)) / np.sqrt(len(rows) * KNOTS), LEAST)
-        return replace(blank, tau=blank.moving(level)).fitted_to(residual)
+        return cls(rows, inputs, products, np.asarray(tau))
 
     def moving(self, level: float) -> Array:
         """(equations,): tau of inputs that each move the readings by so much; 0 where none does."""
@@ -90,6 +96,7 @@ class Discrepancy:
             tau = np.maximum(tau * np.sqrt(squares / np.maximum(told, 1e-12)), least)
         return replace(self, tau=tau)
 
+    @cached_property
     def whitener(self) -> Whitener:
         """Multiplies by the inverse root of the covariance."""
         d = self._of_columns(self.tau)

@@ -77,7 +77,7 @@ class Runs:
             return self.kind.solve(self.problem, initial, free)
         if discrepancy is None:
             return fit_windows(self.problem, initial, free, most_steps, pull, slopes)
-        root = discrepancy.whitener()
+        root = discrepancy.whitener
         white = None if slopes is None else root.whiten(slopes)
         problem = Whitened(self.problem, root)
         found = fit_windows(problem, initial, free, most_steps, pull, white)
@@ -88,6 +88,10 @@ class Runs:
     def discrepancy(self, params: _core.Params, residual: Array) -> Discrepancy:
         """The random hidden inputs for which the residual (rows,) of these parameters is most likely."""
         return Discrepancy.of(self.problem, params, len(self.kind.hidden), residual)
+
+    def discrepancy_of(self, params: _core.Params, tau: Array) -> Discrepancy:
+        """Random hidden inputs of standard deviations (equations,) that other records told."""
+        return Discrepancy.sized(self.problem, params, tau)
 
     @cached_property
     def whole(self) -> Runs:

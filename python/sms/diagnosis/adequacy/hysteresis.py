@@ -14,7 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.adequacy.subset_estimates import Estimate, beside, column_of, linear
+from sms.diagnosis.adequacy.subset_estimates import (
+    Estimate,
+    beside,
+    column_of,
+    inflation_of,
+    linear,
+)
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, refitted
 from sms.diagnosis.thresholds import APART, APART_BY, PLAY
@@ -47,7 +53,7 @@ def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
     if found is None:
         return None
     (step, play), covariance = found
-    error, play_error = np.sqrt(np.diag(covariance))
+    error, play_error = np.sqrt(inflation_of(data) * np.diag(covariance))
     alone = fitted.params[effect.parameters[0]]
     shift = abs(alone - data.rig.declared(effect.parameters[0]).value)
     if play < APART * play_error or abs(step) < max(APART * error, APART_BY * shift):

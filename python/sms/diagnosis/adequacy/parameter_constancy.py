@@ -21,6 +21,7 @@ from sms.diagnosis.adequacy.subset_estimates import (
     beside,
     column_of,
     drawn_over,
+    inflation_of,
     linear,
     parts_of,
 )
@@ -92,7 +93,7 @@ def _halves_in_time(fitted: Fitted, effect: Effect, data: Data) -> Iterator[_Hal
         cut = float(np.median(np.concatenate([part.signals[signal].ravel() for part in known])))
         found = linear(np.sum([part.halved(signal, cut) for part in known], axis=0), rows)
         if found is not None:
-            step, covariance = found
+            step, covariance = found[0], inflation_of(data) * found[1]
             low, high = (
                 (now + float(d), float(e))
                 for d, e in zip(step, np.sqrt(np.diag(covariance)), strict=True)

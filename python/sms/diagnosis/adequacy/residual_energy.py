@@ -7,12 +7,13 @@ machine slides would outweigh all others in a sum of squares, and it says no mor
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, refitted
-from sms.diagnosis.thresholds import LEAST_OF_NOISE, TOLERATED, WELL
+from sms.diagnosis.hypothesis import Data, Fitted, cost_of_departure, refitted
+from sms.diagnosis.thresholds import LEAST_OF_NOISE, TOLERATED
 from sms.estimation.windows import Runs
 
 
@@ -26,12 +27,19 @@ def energies(runs: Runs, residual: Array) -> Array:
     return np.asarray(sums / samples[:, None])
 
 
+Role = Literal["identify", "validate"]
+ROLES: tuple[Role, Role] = ("identify", "validate")
+
+
 @dataclass(frozen=True)
 class Left:
     """What a model leaves, window by window: (windows, channels) on records of either role.
 
     On validation records its causes are held, and what is known may move within what is declared: whether the model is
     of the right form is one question, how well its fitted values predict another (hypothesis.unseen).
+
+    With records of the healthy machine the unit is what its own model leaves. What is known is then known so well that
+    how far it had to move is a measurement too, and counts in every window alike.
     """
 
     identify: Array
@@ -39,15 +47,40 @@ class Left:
 
     @classmethod
     def by(cls, fitted: Fitted, data: Data) -> Left:
-        return cls(
-            energies(data.identify, fitted.fit.residual),
-            energies(data.validate, refitted(fitted, data).fit.residual),
-        )
+        models = (data.identify, fitted), (data.validate, refitted(fitted, data))
+        identify, validate = (_left(data, runs, model) for runs, model in models)
+        return cls(identify, validate, data.healthy is not None)
+
+    absolute: bool = False
+    """Whether the unit is what the healthy machine's model leaves."""
 
     @property
-    def logarithms(self) -> Array:
-        """(windows,): sum over the channels, the noise of a sample added, on the fitted records and then the others."""
-        return np.asarray(np.log1p(np.vstack([self.identify, self.validate])).sum(axis=1))
+    def by_window(self) -> Array:
+        """(windows,): what counts in comparisons, on the fitted records and then the others: the sum over the channels
+        of the logarithms, the noise of a sample added; where the unit is absolute, of the energies themselves, which
+        make a likelihood."""
+        energy = np.vstack([self.identify, self.validate])
+        return np.asarray((energy if self.absolute else np.log1p(energy)).sum(axis=1))
+
+    def excess(self, role: Role) -> float:
+        """Mean square beyond the noise; beyond what the healthy machine's model leaves, where the unit is that."""
+        energy = self.identify if role == "identify" else self.validate
+        return max(float(np.mean(energy)) - 1.0, 0.0) if self.absolute else excess(energy)
+
+
+def _left(data: Data, runs: Runs, model: Fitted) -> Array:
+    energy = energies(runs, beyond_healthy(data, runs, model.fit.residual))
+    if data.healthy is None:
+        return energy
+    by_chance = data.healthy.inflation * len(model.hypothesis.known)
+    moved = max(cost_of_departure(model) - by_chance, 0.0) / runs.problem.rows
+    return np.asarray((energy + moved) / data.healthy.level)
+
+
+def beyond_healthy(data: Data, runs: Runs, residual: Array) -> Array:
+    """A residual (rows,) in units of the noise and, where records told it, of the healthy machine's discrepancy."""
+    allowed = data.allowed(runs)
+    return residual if allowed is None else allowed.whitener.whiten(residual)
 
 
 def logarithms(runs: Runs, residual: Array) -> float:
@@ -81,16 +114,18 @@ def small(left: Left, least: Array) -> bool:
 
 
 def nothing_left(left: Left, data: Data) -> bool:
-    """Whether a model leaves hardly more than noise: less than twice what fair descriptions differ by."""
+    """Whether a model leaves hardly more than noise: less than twice what fair descriptions differ by; where records of
+    the healthy machine told what its own leaves, hardly more than that.
+    """
+    if left.absolute:
+        return all(left.excess(role) < LEAST_OF_NOISE for role in ROLES)
     total, worst = data.identify.kind.honest
     beyond = 0.5 * (left.identify.mean(axis=0) + left.validate.mean(axis=0)) - 1.0
     return float(beyond.mean()) < 2.0 * total and float(beyond.max()) < 2.0 * worst
 
 
-def left_when_well(healthy: Fitted, runs: Runs) -> Array:
-    """(channels,): the same from records of the healthy machine, whose own error is no fault of it.
-
-    healthy: the baseline as these records (runs) have it. One and a half times that, and a tenth of the noise at least.
-    """
-    beyond = np.maximum(energies(runs, healthy.fit.residual).mean(axis=0) - 1.0, 0.0)
-    return np.asarray(WELL * beyond + LEAST_OF_NOISE)
+def differs_when_well(data: Data) -> Array:
+    """(channels,): by how much one record of the healthy machine is above the level of all, the least being
+    LEAST_OF_NOISE: what another record may leave beyond that level too."""
+    assert data.healthy is not None
+    return np.maximum(data.healthy.spread, LEAST_OF_NOISE)

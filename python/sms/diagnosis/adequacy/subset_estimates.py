@@ -44,6 +44,8 @@ class ByWindow:
     """(windows,): place in them."""
     mean: dict[str, Array]
     """(windows,) of each signal."""
+    inflation: float
+    """How many times larger the variance of an estimate is than residuals as they are counted have it."""
 
     def size(self, chosen: NDArray[np.bool_]) -> Estimate | None:
         """The parameter as these windows alone have it; None where they do not show it."""
@@ -58,7 +60,7 @@ class ByWindow:
         left = float(gram[k + 1, k + 1]) / float(self.rows[chosen].sum())
         return (
             self.value - score / information / self.scale,
-            float(np.sqrt(left / information)) / self.scale,
+            float(np.sqrt(self.inflation * left / information)) / self.scale,
         )
 
 
@@ -92,12 +94,17 @@ def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, Es
 def parts_of(fitted: Fitted, effect: Effect, data: Data) -> list[ByWindow]:
     """A cause window by window, of the records that were fitted and of those that were not."""
     return [
-        _by_window(data.identify, fitted, effect),
-        _by_window(data.validate, refitted(fitted, data), effect),
+        _by_window(data.identify, fitted, effect, inflation_of(data)),
+        _by_window(data.validate, refitted(fitted, data), effect, inflation_of(data)),
     ]
 
 
-def _by_window(runs: Runs, at: Fitted, effect: Effect) -> ByWindow:
+def inflation_of(data: Data) -> float:
+    """How many times larger the variance of an estimate is than residuals as they are counted have it."""
+    return 1.0 if data.healthy is None else data.healthy.inflation
+
+
+def _by_window(runs: Runs, at: Fitted, effect: Effect, inflation: float) -> ByWindow:
     name = effect.parameters[0]
     residual = at.whiten(at.fit.residual)
     column = at.whiten(column_of(runs, at, effect))
@@ -120,6 +127,7 @@ def _by_window(runs: Runs, at: Fitted, effect: Effect) -> ByWindow:
         [run.name for run in runs.motions],
         runs.record[first],
         {n: np.add.reduceat(v, first) / rows for n, v in drawn_over(runs).items()},
+        inflation,
     )
 
 

@@ -32,7 +32,7 @@ def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple
     least = np.maximum(DETECTION * level, np.sqrt(2.0 * runs.kind.honest[0] * rows))
     found = []
     for effect, name, own in zip(effects, names, size, strict=True):
-        largest = max(abs(end) for end in room_of(effect, fitted, data.rig))
+        largest = max(abs(end) for end in room_of(effect, fitted.params, data.rig))
         shift, unit = float(least / max(own, 1e-300)), data.rig.table[name].unit
         found.append(
             StillHidden(effect.id, effect.signal, effect.title, name, shift, unit, largest)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import (
@@ -50,6 +51,10 @@ class Trial:
     """Share of resamples of the windows or strokes in which it is the best of its round."""
     seen_share: float = 0.0
     """Share of what the model before it leaves beyond the noise that it takes, on identification records."""
+    partial: bool = False
+    """Whether all there is against it is that it leaves too much."""
+    by_likelihood: float = 1.0
+    """Chance of what it takes of the identification records, where their likelihood is known."""
     lower: float = 0.0
     """By how much it lowers the sum over windows and signals of the logarithm of what is left."""
     share: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -84,7 +89,7 @@ def score_effects(
     nuisance = nuisance_of(current, white=True)
     columns = current.whiten(raw_columns(current, data.identify, effects))
     sensitivity = project(nuisance, columns, [e.parameters[0] for e in effects])
-    room = np.array([room_of(e, current, data.rig) for e in effects])
+    room = np.array([room_of(e, current.params, data.rig) for e in effects])
     allowed = np.column_stack([room[:, 0] < 0.0, room[:, 1] > 0.0])
     return score_tests(
         sensitivity,
@@ -96,12 +101,12 @@ def score_effects(
     )
 
 
-def room_of(effect: Effect, current: Fitted, rig: Rig) -> tuple[float, float]:
+def room_of(effect: Effect, params: _core.Params, rig: Rig) -> tuple[float, float]:
     """By how much the effect's parameter may still fall (negative), and rise."""
     name = effect.parameters[0]
     low, high = effect.plausible_range(rig.declared(common_parameter(name)).value)
     low, high = max(low, rig.table[name].lower), min(high, rig.table[name].upper)
-    return low - current.params[name], high - current.params[name]
+    return low - params[name], high - params[name]
 
 
 def _unit(columns: Array) -> Array:

@@ -47,19 +47,29 @@ class Step:
     """(rows,) of the excerpt's residual."""
 
 
-def best_step(effect: Effect, current: Fitted, data: Data, excerpt: Runs, here: float) -> Step:
-    """The best of a ladder of sizes, and from there least squares over the effect's own parameters."""
+def best_step(
+    effect: Effect,
+    current: Fitted,
+    base: _core.Params,
+    data: Data,
+    excerpt: Runs,
+    here: float,
+) -> Step:
+    """The best of a ladder of sizes, and from there least squares over the effect's own parameters.
+
+    base: what all else is held at, which leaves `here` of the excerpt.
+    """
     name = effect.parameters[0]
-    now = current.params[name]
-    before = residual_of(excerpt, current.params)
-    best = Step(0.0, current.params, np.zeros(len(before)))
-    low, high = room_of(effect, current, data.rig)
+    now = base[name]
+    before = residual_of(excerpt, base)
+    best = Step(0.0, base, np.zeros(len(before)))
+    low, high = room_of(effect, base, data.rig)
     ladders = [[now + part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
     if low > 0.0 or high < 0.0:  # what is plausible begins away from here
         ladders = [[now + low], [now + high]]
     for ladder in ladders:
         for value in ladder:
-            params = changed(current.params, [name], np.array([value]))
+            params = changed(base, [name], np.array([value]))
             residual = residual_of(excerpt, params)
             if not np.all(np.isfinite(residual)):
                 continue
@@ -71,7 +81,7 @@ def best_step(effect: Effect, current: Fitted, data: Data, excerpt: Runs, here: 
     if best.gain <= 0.0:
         return best
     bounds = extended(current.hypothesis, effect, data).free
-    free = [Free(n, *bounds[n], 0.0, current.params[n]) for n in effect.parameters]
+    free = [Free(n, *bounds[n], 0.0, base[n]) for n in effect.parameters]
     found = fit_windows(excerpt.problem, best.params, free)
     gain = here - logarithms(excerpt, found.residual)
     return best if gain < best.gain else Step(gain, found.params, found.residual - before)

@@ -15,18 +15,27 @@ be missed.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
-from scipy.stats import wilcoxon
+from scipy.stats import chi2, wilcoxon
 
 from sms import _core
 from sms.arrays import Array
-from sms.diagnosis.adequacy.residual_energy import Left, excess, logarithms, nothing_left, small
+from sms.diagnosis.adequacy.residual_energy import (
+    ROLES,
+    Left,
+    beyond_healthy,
+    logarithms,
+    nothing_left,
+    small,
+)
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, refitted, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, Healthy, fit, refitted, residual_of
 from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
 from sms.diagnosis.selection.finite_steps import (
+    Step,
     best_step,
     chosen_by_step,
     extended,
@@ -61,11 +70,13 @@ def try_effects(
 ) -> list[Trial]:
     """Every effect on top of the model as it stands; those that promise most are fitted."""
     scores = score_effects(current, data, effects, rng)
-    room = np.array([room_of(e, current, data.rig) for e in effects])
+    room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
-    excerpt = data.identify.excerpt(telling_windows(data.identify, current.fit.residual))
-    here = logarithms(excerpt, residual_of(excerpt, current.params))
-    steps = [best_step(e, current, data, excerpt, here) for e in effects]
+    base = _base(current, data)
+    left = beyond_healthy(data, data.identify, residual_of(data.identify, base))
+    excerpt = data.identify.excerpt(telling_windows(data.identify, left))
+    here = logarithms(excerpt, residual_of(excerpt, base))
+    steps = [best_step(e, current, base, data, excerpt, here) for e in effects]
     by_step = chosen_by_step(steps)
     by_slope = [int(k) for k in np.argsort(-promise)[:TRIED_BY_SLOPE] if promise[k] > 0.0]
     chosen = list(dict.fromkeys(by_step + by_slope))
@@ -75,7 +86,7 @@ def try_effects(
         if k not in chosen and np.any(scores.cosine[k, chosen] > ALIKE)
     ]
     first = {
-        k: _fitted(effects[k], current, data, steps[k].params, float(scores.estimate[k]), room[k])
+        k: _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
         for k in chosen
     }
     before = refitted(current, data).fit.residual ** 2
@@ -98,33 +109,41 @@ def try_effects(
     return trials
 
 
+def _base(current: Fitted, data: Data) -> _core.Params:
+    """Where finite steps are tried from: the model as it stands. Where records of the healthy machine told its numbers,
+    they are held there: a change that other numbers have made up for is then in plain sight.
+    """
+    if data.healthy is None:
+        return current.params
+    known = list(current.hypothesis.known)
+    return changed(current.params, known, np.array([current.hypothesis.start[n] for n in known]))
+
+
 def _fitted(
-    effect: Effect,
-    current: Fitted,
-    data: Data,
-    by_step: _core.Params,
-    slope: float,
-    room: Array,
+    effect: Effect, current: Fitted, data: Data, step: Step, slope: float, room: Array
 ) -> Fitted:
     """The effect fitted beside all else that is free, from the better of its step and its linear estimate."""
+    hypothesis = extended(current.hypothesis, effect, data)
+    allowed = data.allowed(data.identify)
+    if allowed is not None and step.gain > 0.0:
+        return fit(hypothesis, data.identify, step.params, CANDIDATE_STEPS, discrepancy=allowed)
     name = effect.parameters[0]
     now = current.params[name]
     linear = now + float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
     linear = linear if effect.step is None else max(linear, 0.1 * effect.step)
     best: tuple[float, _core.Params] | None = None
-    for start in (by_step, changed(current.params, [name], np.array([linear]))):
+    for start in (step.params, changed(current.params, [name], np.array([linear]))):
         residual = residual_of(data.identify, start)
         if np.all(np.isfinite(residual)):
             left = logarithms(data.identify, residual)
             if best is None or left < best[0]:
                 best = (left, start)
     start = current.params if best is None else best[1]
-    hypothesis = extended(current.hypothesis, effect, data)
     slopes = dict(zip(current.hypothesis.free, current.fit.jacobian.T, strict=True))
     if set(hypothesis.free) - set(slopes) == {name}:
         slopes[name] = raw_columns(current, data.identify, [effect])[:, 0]
     known = slopes if set(hypothesis.free) <= set(slopes) else None
-    return fit(hypothesis, data.identify, start, CANDIDATE_STEPS, known)
+    return fit(hypothesis, data.identify, start, CANDIDATE_STEPS, known, allowed)
 
 
 def judge(
@@ -141,7 +160,7 @@ def judge(
     cause must take.
     """
     before = Left.by(current, data)
-    left_before = (excess(before.identify), excess(before.validate))
+    left_before = before.excess("identify"), before.excess("validate")
     counts = resampled(
         data.validate.record, data.validate.window, rng
     )  # (draws, windows), record by record
@@ -151,29 +170,67 @@ def judge(
         if trial.fitted is current:
             continue
         after = Left.by(trial.fitted, data)
-        left_after = (excess(after.identify), excess(after.validate))
-        shares = [1.0 - a / max(b, 1e-12) for a, b in zip(left_after, left_before, strict=True)]
-        trial.seen_share, trial.gain = shares
-        resampled_after = np.maximum(weights @ after.validate - 1.0, 0.0).mean(axis=1)
-        trial.gain_interval = interval(1.0 - resampled_after / np.maximum(again, 1e-12))
+        if data.healthy is not None:
+            _by_likelihood(trial, before, after, data.healthy, weights)
+            needed = LEAST_SHARE
+        else:
+            left_after = after.excess("identify"), after.excess("validate")
+            shares = [1.0 - a / max(b, 1e-12) for a, b in zip(left_after, left_before, strict=True)]
+            trial.seen_share, trial.gain = shares
+            resampled_after = np.maximum(weights @ after.validate - 1.0, 0.0).mean(axis=1)
+            trial.gain_interval = interval(1.0 - resampled_after / np.maximum(again, 1e-12))
         part = left_before[1] / max(original, 1e-12)
         low, high = (part * g for g in trial.gain_interval)
         trial.share = (part * trial.gain, low, high)
-        lower = before.logarithms - after.logarithms
+        lower = before.by_window - after.by_window
         trial.lower = float(lower.sum())
-        by_rank = len(trials) * float(wilcoxon(lower, alternative="greater").pvalue)
-        trial.p_value = min(1.0, 2.0 * min(by_rank, trial.p_value))
+        if data.healthy is not None:
+            trial.p_value = min(1.0, len(trials) * trial.by_likelihood)
+        else:
+            by_rank = len(trials) * float(wilcoxon(lower, alternative="greater").pvalue)
+            trial.p_value = min(1.0, 2.0 * min(by_rank, trial.p_value))
         trial.reason = _objection(trial, data, needed)
         if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
             trial.cross_validated = True
-            trial.reason = _objection(trial, data, needed) or cross_validation.objection(
+            trial.reason = _objection(trial, data, needed)
+            disagreement = cross_validation.objection(
                 trial.fitted, current, data, 1.0, rng.spawn(1)[0]
             )
+            trial.partial = trial.partial and not disagreement
+            trial.reason = trial.reason or disagreement
         trial.accepted = not trial.reason
 
 
+def _by_likelihood(
+    trial: Trial, before: Left, after: Left, healthy: Healthy, weights: Array
+) -> None:
+    """Shares and chance of a trial where energies are in units of what the healthy machine's model leaves.
+
+    Of what there is beyond that, or of what the trial takes if that is more: an effect may be far smaller than what its
+    model leaves anyway, and still be seen, because it is there in every window.
+    """
+    taken = [
+        float(np.mean(b - a))
+        for b, a in ((before.identify, after.identify), (before.validate, after.validate))
+    ]
+    excess = before.excess("identify"), before.excess("validate")
+    beyond = [max(e, t, 1e-12) for e, t in zip(excess, taken, strict=True)]
+    trial.seen_share, trial.gain = (t / b for t, b in zip(taken, beyond, strict=True))
+    again = (weights @ (before.validate - after.validate)).mean(axis=1)
+    low, high = interval(again / beyond[1])
+    trial.gain_interval = low, min(high, 1.0)
+    ratio = taken[0] * trial.identified.size
+    trial.by_likelihood = float(
+        chi2.sf(max(ratio, 0.0) / healthy.inflation, len(trial.effect.parameters))
+    )
+
+
 def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
-    """Whether the validation records change with the trial by less than is worth a word, and are no worse for it."""
+    """Whether the validation records change with the trial by less than is worth a word, and are no worse for it. With
+    records of the healthy machine the likelihood has counted them already: no worse is enough.
+    """
+    if data.healthy is not None:
+        return trial.gain > 0.0
     honest = data.validate.kind.honest[0]
     changed_by = cross_validation.change_on_validation(trial.fitted, current, data)
     return trial.gain_interval[1] >= 0.0 and changed_by < honest
@@ -183,10 +240,12 @@ def _objection(trial: Trial, data: Data, needed: float) -> str:
     """Why the trial is no cause; empty if there is nothing against it. Without the validation records where they do not
     speak.
     """
-    name = trial.effect.parameters[0]
-    if name not in trial.fitted.movable:
-        said = format_quantity(trial.fitted.params[name], data.rig.table[name].unit, name)
-        return f"fits best at or beyond {said}, the end of what is plausible"
+    for name in trial.effect.parameters:
+        value, declared = trial.fitted.params[name], trial.fitted.hypothesis.start[name]
+        beside = name != trial.effect.parameters[0]
+        if name not in trial.fitted.movable and not (beside and value == declared):
+            said = format_quantity(value, data.rig.table[name].unit, name)
+            return f"fits best at or beyond {said}, the end of what is plausible"
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
     taken = (
@@ -194,10 +253,12 @@ def _objection(trial: Trial, data: Data, needed: float) -> str:
         f"{100.0 * trial.gain:.0f} % on the validation records"
     )
     if trial.cross_validated:
-        return "" if trial.seen_share >= needed else taken
+        trial.partial = trial.seen_share < needed
+        return taken if trial.partial else ""
     if trial.gain_interval[0] <= 0.0:
         return f"{taken}, where it may be chance"
     if (1.0 - trial.seen_share) * (1.0 - trial.gain) > (1.0 - needed) ** 2:
+        trial.partial = True
         return taken
     return ""
 
@@ -205,14 +266,23 @@ def _objection(trial: Trial, data: Data, needed: float) -> str:
 def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
     """The best accepted trial, and those whose predictions change alike and are no worse; or none."""
     accepted = sorted((t for t in trials if t.accepted), key=lambda t: -t.lower)
-    if not accepted:
-        return []
+    return _alike(accepted, current, data) if accepted else []
+
+
+def partial_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+    """The same of those whose only fault is that they leave too much: another cause may stand beside them."""
+    partial = sorted((t for t in trials if t.partial), key=lambda t: -t.lower)
+    return _alike(partial, current, data) if partial and data.healthy is not None else []
+
+
+def _alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+    """The best of them, and those whose predictions change alike and are no worse."""
     best = accepted[0]
-    left = Left.by(best.fitted, data).logarithms
+    left = Left.by(best.fitted, data).by_window
     members = [best]
     for trial in accepted[1:]:
         cosine = _similarity(best, trial, current, data)
-        worse = Left.by(trial.fitted, data).logarithms - left
+        worse = Left.by(trial.fitted, data).by_window - left
         error = float(np.std(worse)) * np.sqrt(len(worse))
         if cosine > TWINS and float(worse.sum()) <= TELLS_APART * error:
             members.append(trial)
@@ -270,8 +340,11 @@ def stepwise_selection(
     Where a model leaves no more than that, only a cause that takes nearly all of it is believed: half of so small an
     error is taken by many.
     """
-    current, rounds, remaining = baseline, [], list(effects)
-    original = excess(Left.by(baseline, data).validate)
+    rounds: list[Round] = []
+    current, remaining = baseline, list(effects)
+    waiting: tuple[Fitted, int] | None = None
+    """The model before a cause that leaves too much to stand alone, and that cause's round."""
+    original = Left.by(baseline, data).excess("validate")
     for number in range(1, MOST_CAUSES + 1):
         here = Left.by(current, data)
         if not remaining or nothing_left(here, data):
@@ -289,21 +362,41 @@ def stepwise_selection(
             rng,
         )
         members = ambiguity_group(trials, current, data)
+        if members and waiting is not None:
+            if not _enough_together(waiting[0], members[0], data):
+                members = []
+            waiting = None if members else waiting
+        elif not members and waiting is None:
+            members = partial_group(trials, current, data)
+            waiting = (current, len(rounds)) if members else None
         rounds.append(Round(trials, members))
         if not members:
             break
         members[0].fitted = current = _converged(members[0].fitted, data)
         remaining = [e for e in remaining if e is not members[0].effect]
+    if waiting is not None:  # it has found no other beside it
+        current = waiting[0]
+        rounds = [r if k < waiting[1] else replace(r, members=[]) for k, r in enumerate(rounds)]
     found = [r.members for r in rounds if r.members]
     while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
         found, current = fewer
     return Outcome(current, rounds, found)
 
 
+def _enough_together(before: Fitted, second: Trial, data: Data) -> bool:
+    """Whether two causes take what each would have to take of what the other leaves."""
+    was, left = Left.by(before, data), Left.by(second.fitted, data)
+    kept = 1.0
+    for role in ROLES:
+        kept *= left.excess(role) / max(was.excess(role), 1e-12)
+    return kept <= (1.0 - LEAST_SHARE) ** 4
+
+
 def _converged(fitted: Fitted, data: Data) -> Fitted:
     """A candidate's fit, carried on to its end."""
     slopes = dict(zip(fitted.hypothesis.free, fitted.fit.jacobian.T, strict=True))
-    return fit(fitted.hypothesis, data.identify, fitted.params, slopes=slopes)
+    allowed = data.allowed(data.identify)
+    return fit(fitted.hypothesis, data.identify, fitted.params, slopes=slopes, discrepancy=allowed)
 
 
 def _without_one(
@@ -314,7 +407,7 @@ def _without_one(
     A cause is missed if without it the others leave at least as much more as a cause has to take.
     """
     left = Left.by(final, data)
-    least = excess(left.identify), excess(left.validate)
+    least = left.excess("identify"), left.excess("validate")
     for members in found:
         kept = [m for m in found if m is not members]
         hypothesis, start = baseline.hypothesis, baseline.params.copy()
@@ -322,9 +415,9 @@ def _without_one(
             hypothesis = extended(hypothesis, others[0].effect, data)
         for name in hypothesis.free:
             start[name] = final.params[name]
-        without = fit(hypothesis, data.identify, start)
+        without = fit(hypothesis, data.identify, start, discrepancy=data.allowed(data.identify))
         other = Left.by(without, data)
-        more = excess(other.identify), excess(other.validate)
+        more = other.excess("identify"), other.excess("validate")
         if any(a < (1.0 - LEAST_SHARE) * b for a, b in zip(least, more, strict=True)):
             continue
         return kept, without
