@@ -11,6 +11,7 @@
 #pragma once
 
 #include "estimation/recorded.hpp"
+#include "sms/vessel.hpp"
 
 namespace sms {
 namespace estimation {
@@ -44,8 +45,8 @@ S reservoir_after(const Params<S>& p, const S& pressure, const S& drawn, double 
   if (!(p.supply_line_resistance > S(0))) {
     return p.supply_pressure;
   }
-  const S follows =
-      p.compression_heat_ratio * p.gas_constant * p.air_temperature / (p.reservoir_volume * p.supply_line_resistance);
+  const S follows = p.compression_heat_ratio * p.gas_constant * p.air_temperature /
+                    (p.reservoir_volume * supply_line_slope<S>(p, p.supply_pressure - pressure));
   return pressure + S(step) * reservoir_pressure_rate(p, pressure, drawn) / (S(1) + S(step) * follows);
 }
 

@@ -1806,6 +1806,14 @@ class Params:
     def supply_line_resistance(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def supply_line_turbulence(self) -> float:
+        """
+        supply_droop: pressure lost there besides per mass flow squared [Pa s^2/kg^2]; neutral
+        """
+    @supply_line_turbulence.setter
+    def supply_line_turbulence(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def supply_pressure(self) -> float:
         """
         pressure in front of the supply line, absolute, p_s [Pa]; published, 0.4 MPa gauge over 86 kPa (section 5.2)

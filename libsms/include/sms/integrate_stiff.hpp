@@ -96,9 +96,9 @@ ActuatorStiffness<S> actuator_stiffness(const Params<S>& p, FrictionLaw law, con
   s.motion_velocity = -(damping / mass);
   s.lower = -(air / a.lower.volume * (feed_lower + vent_lower));
   s.upper = -(air / a.upper.volume * (feed_upper + vent_upper));
-  s.reservoir = p.supply_line_resistance > S(0)
-                    ? S(-(air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed_lower + feed_upper)))
-                    : S(0);
+  const S line = supply_line_slope<S>(p, p.supply_pressure - supply.pressure);
+  s.reservoir =
+      p.supply_line_resistance > S(0) ? S(-(air / p.reservoir_volume * (S(1) / line + feed_lower + feed_upper))) : S(0);
   s.deflection = law == FrictionLaw::lugre || law == FrictionLaw::dahl || p.presliding_share > S(0)
                      ? S(-(speed * p.bristle_stiffness / p.coulomb_force))
                      : S(0);
@@ -192,9 +192,8 @@ TankStiffness<S> stiffness(const Tank<S>& tank, const TankState<S>& state, const
   TankStiffness<S> s;
   s.pressure = -(stiff_air / t.space.volume * (feed + vent));
   s.temperature = -(of_air * (t.flow.in + t.flow.out) / (thin * t.space.volume));
-  s.reservoir = p.supply_line_resistance > S(0)
-                    ? S(-(stiff_air / p.reservoir_volume * (S(1) / p.supply_line_resistance + feed)))
-                    : S(0);
+  const S line = supply_line_slope<S>(p, p.supply_pressure - state.supply_pressure);
+  s.reservoir = p.supply_line_resistance > S(0) ? S(-(stiff_air / p.reservoir_volume * (S(1) / line + feed))) : S(0);
   return s;
 }
 

@@ -13,7 +13,8 @@
 //
 //   p_R' = alpha R T / V_R ((p_s - p_R) / r - m_drawn')
 //
-// r = 0 is the source's assumption: the valve sees p_s at any draw.
+// r = 0 is the source's assumption: the valve sees p_s at any draw. A regulator or a long line is turbulent: with k the
+// flow is that which loses r m' + k m'^2 (supply_line_flow).
 #pragma once
 
 #include "sms/chamber.hpp"
@@ -39,13 +40,28 @@ S tank_pressure_rate(const Params<S>& p, const IsoFlow<S>& component, const Gas<
   return polytropic_pressure_rate(p, polytropic_ratios(p), tank, tank_space(p), tank_flow(p, component, tank, outside));
 }
 
+// d(loss) / dm' of the supply line where it loses `drop`, Pa s/kg
+template <typename S>
+S supply_line_slope(const Params<S>& p, const S& drop) {
+  using std::abs;
+  using std::sqrt;
+  const S& r = p.supply_line_resistance;
+  return is_absent(p.supply_line_turbulence) ? r : S(sqrt(r * r + S(4) * p.supply_line_turbulence * abs(drop)));
+}
+
+// kg/s through the line that loses `drop`, Pa: r m' + k m' |m'| = drop, r > 0.
+template <typename S>
+S supply_line_flow(const Params<S>& p, const S& drop) {
+  return S(2) * drop / (p.supply_line_resistance + supply_line_slope(p, drop));
+}
+
 // Pa/s; `drawn` in kg/s by all valves at this reservoir. Zero without a supply line: its pressure is supply_pressure.
 template <typename S>
 S reservoir_pressure_rate(const Params<S>& p, const S& pressure, const S& drawn) {
   if (!(p.supply_line_resistance > S(0))) {
     return S(0);
   }
-  const S fed = (p.supply_pressure - pressure) / p.supply_line_resistance;
+  const S fed = supply_line_flow<S>(p, p.supply_pressure - pressure);
   return p.compression_heat_ratio * p.gas_constant * p.air_temperature / p.reservoir_volume * (fed - drawn);
 }
 

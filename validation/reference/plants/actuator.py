@@ -8,7 +8,7 @@ end_stop.hpp state the readings.
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt
 from typing import NamedTuple
 
 from validation.reference.compiled import compiled
@@ -157,7 +157,14 @@ def air_rates(
     dy[DRIVE], dy[DRIVE_RATE] = 0.0, 0.0
     dy[RESERVOIR] = 0.0
     if p.supply_line_resistance > 0.0:
-        fed = (p.supply_pressure - y[RESERVOIR]) / p.supply_line_resistance
+        drop, r, k = (
+            p.supply_pressure - y[RESERVOIR],
+            p.supply_line_resistance,
+            p.supply_line_turbulence,
+        )
+        fed = drop / r
+        if k > 0.0:  # the root of k m^2 + r m = |drop| by the other formula
+            fed = (sqrt(r**2 + 4.0 * k * abs(drop)) - r) / (2.0 * k) * (1.0 if drop > 0.0 else -1.0)
         spring = p.compression_heat_ratio * p.gas_constant * ta / p.reservoir_volume
         dy[RESERVOIR] = spring * (fed - sl - su)
 

@@ -39,6 +39,7 @@ class Numbers(NamedTuple):
     supply_pressure: float
     reservoir_volume: float
     supply_line_resistance: float
+    supply_line_turbulence: float
     valve_centre: float
     valve_frequency: float
     valve_damping_ratio: float

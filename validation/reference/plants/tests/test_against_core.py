@@ -24,6 +24,7 @@ TIGHT = 1e-9
 """Tolerance of the core at which its own error is out of the way."""
 EVERYTHING = {
     "supply_line_resistance": 1e6,
+    "supply_line_turbulence": 1e9,
     "piston_leakage": 1e-9,
     "chamber_leakage_lower": 1e-10,
     "chamber_leakage_upper": 2e-10,
