@@ -91,7 +91,7 @@ std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> r
   return std::make_unique<PlatformProblem>(
       est::PlatformPlant(std::move(records), platform_noise(noise), laws_of(friction, valve, chambers),
                          static_cast<sms::MassModel>(masses), longest_step),
-      est::WindowOptions{window, kRunUp, threads});
+      options_of(window, threads));
 }
 
 std::unique_ptr<PlatformLoopProblem> make_loop_problem(std::vector<est::PlatformRecord> records, const Noise& noise,
@@ -105,7 +105,7 @@ std::unique_ptr<PlatformLoopProblem> make_loop_problem(std::vector<est::Platform
       est::PlatformLoopPlant(std::move(records), platform_noise(noise), of_legs(noise, "valve_command"), laws,
                              control_law(law, compensated, electronics), said, static_cast<sms::MassModel>(masses),
                              longest_step),
-      est::WindowOptions{window, kRunUp, threads});
+      options_of(window, threads));
 }
 
 // Residual and Jacobian, where a parameter may be that of one leg.

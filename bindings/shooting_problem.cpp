@@ -42,7 +42,7 @@ std::unique_ptr<BenchProblem> make_bench_problem(std::vector<est::BenchRecord> r
                                                  int threads) {
   return std::make_unique<BenchProblem>(
       est::BenchPlant(std::move(records), bench_noise(noise), laws_of(friction, valve, chambers), longest_step),
-      est::WindowOptions{window, kRunUp, threads});
+      options_of(window, threads));
 }
 
 std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::BenchRecord> records, const Noise& noise,
@@ -55,7 +55,7 @@ std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::Bench
   return std::make_unique<BenchLoopProblem>(
       est::BenchLoopPlant(std::move(records), bench_noise(noise), noise.at("valve_command"), laws,
                           control_law(law, compensated, electronics), said, longest_step),
-      est::WindowOptions{window, kRunUp, threads});
+      options_of(window, threads));
 }
 
 est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eigen::VectorXd pressure,
@@ -79,7 +79,7 @@ std::unique_ptr<TankPlantProblem> make_tank_plant_problem(std::vector<est::TankP
   return std::make_unique<TankPlantProblem>(
       est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", "iso_0_4_mpa", chambers),
                      longest_step),
-      est::WindowOptions{window, kRunUp, threads});
+      options_of(window, threads));
 }
 
 // The plant where a window begins, as a simulation takes it (plant.cpp).

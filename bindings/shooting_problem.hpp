@@ -18,7 +18,13 @@
 
 namespace sms_python {
 
-constexpr double kRunUp = 0.1;  // s, of every record
+// window: length, s
+inline sms::estimation::WindowOptions options_of(double window, int threads) {
+  sms::estimation::WindowOptions options;
+  options.length = window;
+  options.threads = threads;
+  return options;
+}
 
 // (ParamIndex, by how much it is larger) from names.
 inline std::vector<std::pair<int, double>> conditions_of(const std::map<std::string, double>& by_name) {

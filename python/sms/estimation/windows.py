@@ -25,9 +25,6 @@ from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import without_leg
 
-RUN_UP = 0.1
-"""s before the first window of a record, in which the spool follows the command (WindowOptions)."""
-
 
 @dataclass(frozen=True, eq=False)
 class Runs:
@@ -101,12 +98,12 @@ class Runs:
         return replace(self, motions=tuple(self.kind.whole(run) for run in self.motions))
 
     def excerpt(self, chosen: Sequence[int]) -> Runs:
-        """Some of the windows, each a record of its own, with as much before it as a simulation runs up."""
-        runs = []
+        """Some of the windows, each a record of its own, with as much before it as the first of its record has."""
+        runs, windows = [], self.problem.windows
         for k in chosen:
-            window = self.problem.windows[k]
+            window = windows[k]
             run = self.motions[window.record]
-            lead = round(RUN_UP / run.step)
+            lead = next(w.first for w in windows if w.record == window.record)
             part = slice(max(window.first - lead, 0), window.first + window.samples)
             signals = {n: v[part] for n, v in run.signals.items()}
             runs.append(replace(run, time=run.time[part], signals=signals))
