@@ -16,12 +16,13 @@ Eigen::VectorXd integral_along(const ControlRecord& record, const ControlLaw& la
   const double ratio = p.control_period / record.step;
   const Eigen::Index last = record.extension.size() - 1;
   Eigen::VectorXd integral(static_cast<Eigen::Index>(static_cast<double>(last) / ratio + 1e-6) + 1);
+  const double clock = extension_sensor(p).clock;
   SampledController<double> controller(p, law);
-  controller.begin(record.setpoint[0], record.extension[0], 0.0);
+  controller.begin(record.setpoint[0], reading_of_controller(record, 0.0, clock), 0.0);
   for (Eigen::Index j = 0; j < integral.size(); ++j) {
     const double at = static_cast<double>(j) * ratio;
     integral[j] = controller.integral();
-    controller.sample(detail::command_at(record.setpoint, at), detail::command_at(record.extension, at));
+    controller.sample(detail::command_at(record.setpoint, at), reading_of_controller(record, at, clock));
   }
   return integral;
 }

@@ -15,6 +15,9 @@
 //
 // Where the command was recorded, the controller is fed with the record within the window as well, beside the simulation:
 // given the readings, the recorded command depends on the controller alone.
+//
+// A controller reads its own converter, the record holds what a logger wrote, perhaps by a late clock (sensor.hpp): what the
+// controller had at t stands in the record at t + clock.
 #pragma once
 
 #include "estimation/hidden_inputs.hpp"
@@ -92,6 +95,12 @@ struct ControlRecord {
   const Eigen::VectorXd& command;    // V; empty: not measured
 };
 
+// What a controller had for the extension at a time counted in samples; `clock` is that of the extension's logger, s.
+template <typename S>
+S reading_of_controller(const ControlRecord& record, double at, const S& clock) {
+  return detail::command_at<S>(record.extension, S(at) + clock / S(record.step));
+}
+
 // What the integral of a controller holds before each of its samples, fed with the record from zero on, V.
 Eigen::VectorXd integral_along(const ControlRecord& record, const ControlLaw& law, const Params<double>& p);
 
@@ -115,6 +124,7 @@ class SimulatedController final : public ValveDrive<S> {
         grid_(grid),
         h_(h),
         late_(delay_to_chamber(p) / h),
+        clock_(extension_sensor(p).clock),
         hidden_(hidden),
         noise_(noise),
         begins_(grid.begins(window.first, record.step)),
@@ -165,20 +175,22 @@ class SimulatedController final : public ValveDrive<S> {
     drive_rates(p_, laws_, y.actuator, mean_, rate.actuator);
   }
 
-  // What the controller makes of the recorded readings against the recorded command, over its noise.
+  // What the controller makes of the recorded readings against the recorded command, over its noise. Where its reading is
+  // beyond the record: nothing.
   S* readings(int sample, S* out) const override {
     if (record_.command.size() > 0) {
-      *out++ = detail::reading_error<S>(by_record_ + pushed_, record_.command, sample, noise_);
+      const double read_at = sample + value_of(clock_) / record_.step;
+      const bool is_read = !(read_at < 0.0) && !(read_at > static_cast<double>(record_.extension.size() - 1));
+      *out++ = is_read ? detail::reading_error<S>(by_record_ + pushed_, record_.command, sample, noise_) : S(0);
     }
     return out;
   }
 
  private:
-  S recorded(const Eigen::VectorXd& signal, int j) const {
-    return S(detail::command_at<double>(signal, double(j) * grid_.every / grid_.steps));
-  }
-  S setpoint(int j) const { return recorded(record_.setpoint, j); }
-  S reading(int j) const { return recorded(record_.extension, j); }
+  // Of sample j of the controller, counted in samples of the record.
+  double time_of(int j) const { return double(j) * grid_.every / grid_.steps; }
+  S setpoint(int j) const { return S(detail::command_at<double>(record_.setpoint, time_of(j))); }
+  S reading(int j) const { return reading_of_controller(record_, time_of(j), clock_); }
 
   // Of sample j; before the record, and before the controller is fed: the command at rest.
   S sent(int j) const { return j < begins_ ? p_.command_offset : sent_[static_cast<std::size_t>(j - begins_)]; }
@@ -203,7 +215,7 @@ class SimulatedController final : public ValveDrive<S> {
   ControlRecord record_;
   const Window& window_;
   ControlGrid grid_;
-  S h_, late_;
+  S h_, late_, clock_;
   HiddenInputs<S> hidden_;
   double noise_;
   int begins_;
