@@ -12,7 +12,7 @@ from sms.arrays import Array
 from sms.estimation.kind import Equations, Experiment, Kind
 from sms.estimation.run import Run
 from sms.io.rig import Rig
-from sms.rigs.pneumatic import NOTHING, in_windows
+from sms.rigs.pneumatic import NOTHING, in_windows, record_of_simulation
 
 LONGEST_STEP = 1e-3
 """s: of the integration. At 2.5 ms a piston that stops chatters over the kink of its friction; at 1.25 ms hardly."""
@@ -183,16 +183,14 @@ def simulated(
     extension = run["extension"]
     if not (extension.min() > margin and extension.max() < stroke - margin):
         return None
-    pick = slice(None, None, max(1, round(STEP / period)))
-    names = ("valve_command", "extension", "chamber_pressure_lower", "chamber_pressure_upper")
-    signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
+    every = max(1, round(STEP / period))
+    names = ("valve_command", *(s for s in OUTPUTS if s != "supply_pressure" or s in channels))
+    signals = record_of_simulation(run, names, every)
     if own:
-        signals["setpoint"] = np.ascontiguousarray(wanted[pick])
-    if "supply_pressure" in channels:
-        signals["supply_pressure"] = np.full(len(signals["extension"]), machine["supply_pressure"])
+        signals["setpoint"] = np.ascontiguousarray(wanted[::every])
     changes = {"moving_mass": added_mass, "supply_pressure": supply_change}
     conditions = {n: v for n, v in changes.items() if v != 0.0}
-    return Run("proposed", "identify", time[pick], signals, frozenset(), conditions)
+    return Run("proposed", "identify", time[::every], signals, frozenset(), conditions)
 
 
 MENU = (

@@ -15,7 +15,7 @@ from sms.estimation.problem import Problem, WindowProblem
 from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import LEGS, of_legs
-from sms.rigs.pneumatic import NOTHING, in_windows
+from sms.rigs.pneumatic import NOTHING, in_windows, record_of_simulation
 
 LONGEST_STEP = 2.5e-3
 """s: of the integration. Under the platform a piston carries a hundred kilograms, and stops gently."""
@@ -219,23 +219,15 @@ def simulated(
     extension = run.legs("extension")
     if not (extension.min() > MARGIN and extension.max() < stroke - MARGIN):
         return None
-    pick = slice(None, None, max(1, round(STEP / period)))
-    names = of_legs(
-        "valve_command", "extension", "chamber_pressure_lower", "chamber_pressure_upper"
-    )
-    signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
+    every = max(1, round(STEP / period))
+    optional = ("supply_pressure", "roll", "pitch")
+    names = (*of_legs("valve_command"), *(s for s in OUTPUTS if s not in optional or s in channels))
+    signals = record_of_simulation(run, names, every)
     if own:
-        wanted = zip(of_legs("setpoint"), setpoint[pick].T, strict=True)
+        wanted = zip(of_legs("setpoint"), setpoint[::every].T, strict=True)
         signals |= {name: np.ascontiguousarray(values) for name, values in wanted}
-    for name, column in (
-        ("supply_pressure", "supply_pressure_1"),
-        ("roll", "roll"),
-        ("pitch", "pitch"),
-    ):
-        if name in channels:
-            signals[name] = np.ascontiguousarray(run[column][pick])
     conditions = {"supply_pressure": supply_change} if supply_change != 0.0 else {}
-    return Run("proposed", "identify", time[pick], signals, frozenset(), conditions)
+    return Run("proposed", "identify", time[::every], signals, frozenset(), conditions)
 
 
 MENU = (

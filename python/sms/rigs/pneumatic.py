@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import TypedDict
 
 import numpy as np
 
+from sms import simulation
 from sms.arrays import Array
 from sms.io.rig import Rig
+from sms.io.signals import without_leg
 
 WINDOW = 1.0
 """s: length of a window."""
@@ -65,3 +68,15 @@ def controller_of(rig: Rig) -> Controller:
         "compensated": rig.control.compensated,
         "electronics": rig.control.electronics,
     }
+
+
+def record_of_simulation(
+    run: simulation.Run, signals: Sequence[str], every: int
+) -> dict[str, Array]:
+    """What a record would hold of a simulated run, a sample every so many control periods: the commands, and what the
+    sensors say of the rest."""
+
+    def column(signal: str) -> Array:
+        return run[signal] if without_leg(signal) == "valve_command" else run.reading(signal)
+
+    return {signal: np.ascontiguousarray(column(signal)[::every]) for signal in signals}

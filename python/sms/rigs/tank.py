@@ -16,7 +16,7 @@ from sms.estimation.run import Run
 from sms.estimation.run import make_run as make_any_run
 from sms.io.records import Record
 from sms.io.rig import Rig
-from sms.rigs.pneumatic import step_for
+from sms.rigs.pneumatic import record_of_simulation, step_for
 
 SHORTEST, LONGEST, PER_RECORD = 1.0, 5.0, 5.0
 """s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does,
@@ -189,10 +189,11 @@ def simulated(
         )
     except _core.StatusError:
         return None
-    pick = slice(None, None, round(STEP / period))
-    names = ("valve_command", *(s for s in OUTPUTS if s in channels))
-    signals = {name: np.ascontiguousarray(run[name][pick]) for name in names}
-    return replace(planned, time=time[pick], signals=signals)
+    every = round(STEP / period)
+    signals = record_of_simulation(
+        run, ("valve_command", *(s for s in OUTPUTS if s in channels)), every
+    )
+    return replace(planned, time=time[::every], signals=signals)
 
 
 MENU = (
