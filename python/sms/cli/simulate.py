@@ -56,8 +56,8 @@ def simulate(
     charged and emptied by its valve, as in the flow test. Ctrl-C ends the run and keeps what was
     computed as run.partial.
     """
+    from sms.report.run_files import summary_of, write_run  # noqa: PLC0415
     from sms.scenario import command_of, findings_of, load_scenario, run_scenario  # noqa: PLC0415
-    from sms.scenario.files import summary_of, write_run  # noqa: PLC0415
     from sms.scenario.tank import TankRecord, run_tank, tank_findings  # noqa: PLC0415
 
     with bad_input():

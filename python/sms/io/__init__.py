@@ -11,6 +11,7 @@ from sms.io.rig import Declaration, RecordSource, Rig, SignalSource, load_rig
 from sms.io.write import (
     write_bytes_atomically,
     write_extended_rig,
+    write_parquet,
     write_record,
     write_table,
     write_text_atomically,
@@ -31,6 +32,7 @@ __all__ = [
     "raise_if_unusable",
     "write_bytes_atomically",
     "write_extended_rig",
+    "write_parquet",
     "write_record",
     "write_table",
     "write_text_atomically",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import io
 import os
 import secrets
 from collections.abc import Mapping, MutableMapping
@@ -66,6 +67,14 @@ def write_table(path: Path, columns: Mapping[str, ArrayLike]) -> None:
     if path.suffix == ".gz":
         content = gzip.compress(content, mtime=0)  # without the time: equal tables, equal files
     write_bytes_atomically(path, content)
+
+
+def write_parquet(path: Path, columns: Mapping[str, ArrayLike]) -> None:
+    """The same as Parquet."""
+    buffer = io.BytesIO()
+    frame = pd.DataFrame({name: np.asarray(c) for name, c in columns.items()})
+    frame.to_parquet(buffer, index=False)
+    write_bytes_atomically(path, buffer.getvalue())
 
 
 def write_record(path: Path, signals: Mapping[str, ArrayLike]) -> None:

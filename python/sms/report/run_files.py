@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import json
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
 from sms import _core
-from sms.arrays import Array
-from sms.io import write_bytes_atomically, write_table, write_text_atomically
+from sms.io import write_parquet, write_table, write_text_atomically
 from sms.report.simulation import simulation_html
 from sms.scenario.findings import Findings
 from sms.scenario.load import Scenario
@@ -84,10 +80,3 @@ def summary_of(
         ],
         **findings.to_dict(),
     }
-
-
-def write_parquet(path: Path, columns: dict[str, Array]) -> None:
-    """Columns (n,) named "name [unit]" as Parquet."""
-    buffer = io.BytesIO()
-    pd.DataFrame(columns).to_parquet(buffer, index=False)
-    write_bytes_atomically(path, buffer.getvalue())

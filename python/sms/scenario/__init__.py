@@ -1,7 +1,7 @@
 """Scenarios: a TOML file in, a simulated run with its findings out.
 
-The road: `load_scenario`, `command_of`, `run_scenario`, `findings_of`, `write_run`; for the flow test's
-tank `run_tank` and `tank_findings`.
+The road: `load_scenario`, `command_of`, `run_scenario`, `findings_of`, and `write_run` (report/run_files.py); for the
+flow test's tank `run_tank` and `tank_findings`.
 """
 
 from sms.scenario.command import command_of

@@ -24,10 +24,9 @@ import pandas as pd
 from sms import StatusError
 from sms.cluster import client_of
 from sms.io.errors import InputError
-from sms.io.write import write_text_atomically
+from sms.io.write import write_parquet, write_text_atomically
 from sms.parameters import PARAMETERS
 from sms.scenario.command import command_of
-from sms.scenario.files import write_parquet
 from sms.scenario.findings import findings_of
 from sms.scenario.load import Scenario, scenario_from
 from sms.scenario.plant import run_scenario
