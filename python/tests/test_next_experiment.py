@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
+from sms.diagnosis.design.detection_limits import published_rig
 from sms.diagnosis.design.next_experiment import next_experiment
 from sms.diagnosis.result import Hidden, Shape
+from sms.rigs.kinds import KINDS
 
 
 @pytest.mark.parametrize(
@@ -29,3 +32,17 @@ def test_an_unknown_asks_for_a_run_that_can_be_made(signal: str, title: str, sai
     assert asked is not None
     assert asked.title == title
     assert said in asked.purpose and "in force" in asked.purpose
+
+
+@pytest.mark.parametrize("name", list(KINDS))
+def test_a_proposed_record_holds_what_the_sensors_say(name: str) -> None:
+    rig, kind = published_rig(name), KINDS[name]
+    healthy, off = rig.start(), rig.start()
+    off["sensor_offset_supply_pressure"] = 5e3
+    run = kind.menu[0].simulated(rig, healthy, kind.outputs)
+    wrong = kind.menu[0].simulated(rig, off, kind.outputs)
+    assert run is not None and wrong is not None
+    assert set(kind.outputs) <= set(run.signals)
+    for signal, values in run.signals.items():
+        more = 5e3 if signal == "supply_pressure" else 0.0
+        np.testing.assert_allclose(wrong.signals[signal] - values, more, rtol=0.0, atol=1e-6)
