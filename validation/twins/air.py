@@ -101,8 +101,15 @@ def leak(p: Machine, c: float, p1: float, t1: float, p2: float, t2: float) -> fl
 
 
 @compiled
+def tube_volume(p: Machine) -> float:
+    """m3"""
+    return 0.25 * pi * p.tube_diameter**2 * p.tube_length
+
+
+@compiled
 def tube_pass(p: Machine, flow: float, pressure: float) -> float:
-    """Share of a mass flow that a tube lets through (Richer and Hurmuzlu, 2000)."""
+    """Share of a mass flow that a tube lets through (Richer and Hurmuzlu, 2000): one that is smooth and straight, without
+    fittings and bends, to the core a tube_loss_factor of 1. What leaks past the spool does not lose by it."""
     if p.tube_length == 0.0:
         return 1.0
     viscosity = 1.82e-5
@@ -215,7 +222,7 @@ def leaks(p: Machine, upper: bool, pressure: float) -> float:
 def room_of(p: Machine, upper: bool, x: float, v: float) -> tuple[float, float, float]:
     """Volume, m3, its rate, and the wall around it, m2."""
     bore = 0.25 * pi * p.bore_diameter**2
-    tube = 0.25 * pi * p.tube_diameter**2 * p.tube_length
+    tube = tube_volume(p)
     if upper:
         area, left = bore - 0.25 * pi * p.rod_diameter**2, p.stroke - x
         wall = 2.0 * area + pi * (p.bore_diameter + p.rod_diameter) * left

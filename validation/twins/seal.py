@@ -4,6 +4,10 @@ Sliding friction is Coulomb's plus a viscous part; within the creep velocity it 
 by s / (1 + s^4)^(1/4). With a bristle compliance the seal bends first and slides later (LuGre: Canudas de Wit et
 al., IEEE Trans. Automatic Control 40, 1995). A lubricant film needs time to build (Tran and
 Yanada, 2013): its viscous part then follows the speed late.
+
+There is no static friction beyond Coulomb's. So pressure on the lips and the place in the bore raise Coulomb friction
+alone: of pressure-dependent friction these machines have the part `pressure_friction`, and nothing for the core's
+`pressure_stiction` to find.
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ from validation.twins.air import (
     edges,
     leaks,
     supply_now,
+    tube_volume,
     valve_inflow,
     valve_map,
 )
@@ -45,7 +46,7 @@ def derivative(
     lost = leaks(p, False, y[0])
     inward = max(from_supply, 0.0) + max(from_exhaust, 0.0) + max(-lost, 0.0)
     outward = max(-from_supply, 0.0) + max(-from_exhaust, 0.0) + max(lost, 0.0)
-    room = (p.tank_volume, 0.0, p.tank_wall_area)
+    room = (p.tank_volume + tube_volume(p), 0.0, p.tank_wall_area)
     dy[0], dy[1] = chamber_rate(p, y[0], t, room, inward, inward * p.air_temperature, outward)
     omega = 2.0 * pi * p.valve_frequency
     dy[2] = y[3]
