@@ -23,9 +23,9 @@ from sms.diagnosis.hypothesis import (
     baseline_hypothesis,
     cost_of_departure,
     fit,
-    from_reference,
 )
 from sms.diagnosis.preparation import make_data
+from sms.diagnosis.reference import from_reference
 from sms.diagnosis.result import Unexplained
 from sms.estimation.least_squares import changed
 from sms.estimation.run import is_held

@@ -40,7 +40,6 @@ from sms.diagnosis.hypothesis import (
     baseline_hypothesis,
     fit,
     fit_with_discrepancy,
-    from_reference,
     nuisance_of,
     unseen,
 )
@@ -49,6 +48,7 @@ from sms.diagnosis.localisation.equation_error import fed_equations
 from sms.diagnosis.localisation.residual_spectrum import symptoms_of
 from sms.diagnosis.localisation.unknown_inputs import estimate_unknown_inputs
 from sms.diagnosis.preparation import make_data
+from sms.diagnosis.reference import from_reference
 from sms.diagnosis.result import (
     Cause,
     Diagnosis,

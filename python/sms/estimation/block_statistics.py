@@ -76,6 +76,13 @@ def covariance_of(jacobian: Array, residual: Array, block: Index) -> Array:
     return np.asarray(small_sample * bread @ (scores.T @ scores) @ bread / np.outer(scale, scale))
 
 
+def covariance_from(information: Array) -> Array:
+    """(k, k): the inverse of an information matrix (k, k), whatever the units of its rows; 0 where there is none."""
+    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
+    scaled = information / np.outer(scale, scale)
+    return np.asarray(np.linalg.pinv(scaled, rcond=1e-12, hermitian=True) / np.outer(scale, scale))
+
+
 def resampled(record: Index, block: Index, rng: np.random.Generator, draws: int = 999) -> Array:
     """(draws, blocks): how often each block occurs when each record's blocks are drawn with replacement."""
     counts = np.zeros((draws, int(block.max()) + 1))

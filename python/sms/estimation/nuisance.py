@@ -95,6 +95,7 @@ def _inverse_root(covariance: Array) -> Array:
 def _marginal(pull: Array, keep: NDArray[np.bool_]) -> Array:
     """(r, kept): rows of the kept parameters where the others may be anything."""
     others = pull[:, ~keep]
+    others = others / np.maximum(np.linalg.norm(others, axis=0), 1e-300)  # each has its own unit
     return np.asarray(pull[:, keep] - others @ (np.linalg.pinv(others) @ pull[:, keep]))
 
 

@@ -53,8 +53,6 @@ class Trial:
     """Share of what the model before it leaves beyond the noise that it takes, on identification records."""
     partial: bool = False
     """Whether all there is against it is that it leaves too much."""
-    by_likelihood: float = 1.0
-    """Chance of what it takes of the identification records, where their likelihood is known."""
     lower: float = 0.0
     """By how much it lowers the sum over windows and signals of the logarithm of what is left."""
     share: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -160,35 +160,23 @@ def judge(
     cause must take.
     """
     before = Left.by(current, data)
-    left_before = before.excess("identify"), before.excess("validate")
+    part = before.excess("validate") / original if original > 0.0 else 1.0
     counts = resampled(
         data.validate.record, data.validate.window, rng
     )  # (draws, windows), record by record
     weights = counts / counts.sum(axis=1, keepdims=True)
-    again = np.maximum(weights @ before.validate - 1.0, 0.0).mean(axis=1)
+    needed = needed if data.healthy is None else LEAST_SHARE
     for trial in trials:
         if trial.fitted is current:
             continue
         after = Left.by(trial.fitted, data)
-        if data.healthy is not None:
-            _by_likelihood(trial, before, after, data.healthy, weights)
-            needed = LEAST_SHARE
+        trial.lower = float((before.by_window - after.by_window).sum())
+        if data.healthy is None:
+            _by_windows(trial, before, after, weights, len(trials))
         else:
-            left_after = after.excess("identify"), after.excess("validate")
-            shares = [1.0 - a / max(b, 1e-12) for a, b in zip(left_after, left_before, strict=True)]
-            trial.seen_share, trial.gain = shares
-            resampled_after = np.maximum(weights @ after.validate - 1.0, 0.0).mean(axis=1)
-            trial.gain_interval = interval(1.0 - resampled_after / np.maximum(again, 1e-12))
-        part = left_before[1] / max(original, 1e-12)
+            _by_likelihood(trial, before, after, weights, len(trials), data.healthy)
         low, high = (part * g for g in trial.gain_interval)
         trial.share = (part * trial.gain, low, high)
-        lower = before.by_window - after.by_window
-        trial.lower = float(lower.sum())
-        if data.healthy is not None:
-            trial.p_value = min(1.0, len(trials) * trial.by_likelihood)
-        else:
-            by_rank = len(trials) * float(wilcoxon(lower, alternative="greater").pvalue)
-            trial.p_value = min(1.0, 2.0 * min(by_rank, trial.p_value))
         trial.reason = _objection(trial, data, needed)
         if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
             trial.cross_validated = True
@@ -201,28 +189,38 @@ def judge(
         trial.accepted = not trial.reason
 
 
-def _by_likelihood(
-    trial: Trial, before: Left, after: Left, healthy: Healthy, weights: Array
-) -> None:
-    """Shares and chance of a trial where energies are in units of what the healthy machine's model leaves.
+def _by_windows(trial: Trial, before: Left, after: Left, weights: Array, tried: int) -> None:
+    """Shares of what is left beyond the noise, and the chance that so many windows are better."""
+    excess = [(before.excess(role), after.excess(role)) for role in ROLES]
+    trial.seen_share, trial.gain = (1.0 - a / max(b, 1e-12) for b, a in excess)
+    was, now = (
+        np.maximum(weights @ left.validate - 1.0, 0.0).mean(axis=1) for left in (before, after)
+    )
+    trial.gain_interval = interval(1.0 - now / np.maximum(was, 1e-12))
+    lower = before.by_window - after.by_window
+    by_rank = tried * float(wilcoxon(lower, alternative="greater").pvalue)
+    trial.p_value = min(1.0, 2.0 * min(by_rank, trial.p_value))
 
-    Of what there is beyond that, or of what the trial takes if that is more: an effect may be far smaller than what its
-    model leaves anyway, and still be seen, because it is there in every window.
+
+def _by_likelihood(
+    trial: Trial, before: Left, after: Left, weights: Array, tried: int, healthy: Healthy
+) -> None:
+    """The same where energies are in units of what the healthy machine's model leaves: a likelihood ratio.
+
+    Shares are of what there is beyond that, or of what the trial takes if that is more: an effect may be far smaller
+    than what its model leaves anyway, and still be seen, because it is there in every window.
     """
     taken = [
         float(np.mean(b - a))
         for b, a in ((before.identify, after.identify), (before.validate, after.validate))
     ]
-    excess = before.excess("identify"), before.excess("validate")
-    beyond = [max(e, t, 1e-12) for e, t in zip(excess, taken, strict=True)]
-    trial.seen_share, trial.gain = (t / b for t, b in zip(taken, beyond, strict=True))
+    beyond = [max(before.excess(r), t, 1e-12) for r, t in zip(ROLES, taken, strict=True)]
+    trial.seen_share, trial.gain = (max(t / b, -1.0) for t, b in zip(taken, beyond, strict=True))
     again = (weights @ (before.validate - after.validate)).mean(axis=1)
-    low, high = interval(again / beyond[1])
-    trial.gain_interval = low, min(high, 1.0)
-    ratio = taken[0] * trial.identified.size
-    trial.by_likelihood = float(
-        chi2.sf(max(ratio, 0.0) / healthy.inflation, len(trial.effect.parameters))
-    )
+    low, high = np.clip(interval(again / beyond[1]), -1.0, 1.0)
+    trial.gain_interval = float(low), float(high)
+    ratio = max(taken[0], 0.0) * trial.identified.size / healthy.inflation
+    trial.p_value = min(1.0, tried * float(chi2.sf(ratio, len(trial.effect.parameters))))
 
 
 def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
