@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from sms.diagnosis.adequacy.repeatability import repeatability
 from sms.estimation.block_statistics import (
+    covariance_from,
     covariance_of,
     merge_windows,
     project_off,
@@ -30,6 +31,19 @@ def coloured(rng: np.random.Generator, n: int, correlation: float) -> np.ndarray
     for i in range(1, n):
         out[i] = correlation * out[i - 1] + noise[i]
     return out
+
+
+def test_a_covariance_does_not_depend_on_the_units_of_the_parameters(
+    rng: np.random.Generator,
+) -> None:
+    """A leak in m^3/(s Pa) beside a mass in kg: columns that differ by 1e12 tell of both."""
+    jacobian = rng.normal(size=(200, 4))
+    units = np.array([1e12, 1.0, 1e-6, 1e4])
+    plain, scaled = (covariance_from(j.T @ j) for j in (jacobian, jacobian * units))
+    np.testing.assert_allclose(scaled * np.outer(units, units), plain, rtol=1e-9)
+    unseen = np.zeros((3, 3))
+    unseen[:2, :2] = np.diag([1e24, 1.0])
+    assert np.diag(covariance_from(unseen)) == pytest.approx([1e-24, 1.0, 0.0])
 
 
 def test_healthy_but_coloured_data_names_nothing(rng: np.random.Generator) -> None:
