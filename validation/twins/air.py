@@ -108,8 +108,11 @@ def tube_volume(p: Machine) -> float:
 
 @compiled
 def tube_pass(p: Machine, flow: float, pressure: float) -> float:
-    """Share of a mass flow that a tube lets through (Richer and Hurmuzlu, 2000): one that is smooth and straight, without
-    fittings and bends, to the core a tube_loss_factor of 1. What leaks past the spool does not lose by it."""
+    """Share of a mass flow that a tube lets through (Richer and Hurmuzlu, 2000).
+
+    It is smooth and straight, without fittings and bends: to the core a tube_loss_factor of 1. What leaks past the
+    spool loses nothing by it.
+    """
     if p.tube_length == 0.0:
         return 1.0
     viscosity = 1.82e-5

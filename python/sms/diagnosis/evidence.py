@@ -1,4 +1,4 @@
-"""The findings as numbers: sizes with honest errors, gains on unseen records, what is left."""
+"""The findings as numbers: sizes with standard errors, reduction of the error on validation records, residual."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""From test-bench records to parameters with honest errors."""
+"""From test-bench records to parameters with standard errors that hold."""

@@ -1,7 +1,7 @@
 """A prediction-error fit of the bench: many parameters together, from windows with free initial states.
 
 What can be fitted is asked first, from the records' own information (their Jacobian at the start, in units of the
-declared noise): a parameter that the residual does not feel is left where it is declared, and so is one that would
+declared noise): a parameter to which the residual is insensitive is left where it is declared, and so is one that would
 not be known better than before. After the fit the same is asked with the residual that is really there. What is known
 within limits beside the machine, pressures, temperature, the spool's lag, is fitted within these limits as a
 rectangle's standard deviation, so that their doubt is part of every error.

@@ -134,8 +134,9 @@ def _stirs(run: Run) -> bool:
 
 def _of_record(run: Run) -> str:
     return (
-        f"record {run.name}: the piston moves less than {1e3 * MOVES:g} mm, so it says nothing of mass and friction; "
-        "what its pressures still show is the flow into closed chambers: mass-flow gain, dead volumes, valve centre"
+        f"record {run.name}: the piston moves less than {1e3 * MOVES:g} mm, so mass and friction are not "
+        "identifiable from it; what its pressures still show is the flow into closed chambers: mass-flow gain, dead "
+        "volumes, valve centre"
     )
 
 

@@ -56,11 +56,11 @@ def choose(
     beside: list[Free],
     rig: Rig,
 ) -> tuple[list[str], list[tuple[str, str]]]:
-    """Drop what is not felt, then, worst first, what would not be known better; in declared noise, at the start.
+    """Drop what the records are insensitive to, then, worst first, what would not be known better.
 
-    Felt: moved by its whole size it changes chi-square by one.
+    In declared noise, at the start. Insensitive: a change by its whole size changes chi-square by less than one.
 
-    What surrounds is left out of `beside` in place where it is not felt.
+    What surrounds is left out of `beside` in place where the records are insensitive to it.
     """
     every = [*names, *(f.name for f in beside)]
     _, jacobian = runs.problem.evaluate(start, every)

@@ -1,4 +1,4 @@
-"""One fit, and what can honestly be said of it: errors, correlations, warnings.
+"""One fit and its diagnostics: standard errors, correlations, warnings.
 
 `estimate` fits a Problem of the core and gives the covariance with coloured residuals, and
 warnings at bounds and at a bad condition. Intervals of what is hardly identifiable: profile.py.
@@ -134,7 +134,7 @@ def estimate(
         last_steps: Gauss-Newton steps at the end that compare no costs. Where a problem searches for initial states
             up to a threshold, its cost is known to that only, and a comparison of costs ends too early.
 
-    Raises: ValueError for a start outside its bounds or a parameter that the records do not feel.
+    Raises: ValueError for a start outside its bounds or a parameter to which the records are insensitive.
     """
     bounds = [(f.name, f.lower, f.upper, 1.0 / f.known_to if f.known_to else 0.0) for f in free]
     fits = [

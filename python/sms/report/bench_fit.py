@@ -47,15 +47,15 @@ def bench_parts(result: BenchResult) -> tuple[list[str], Views]:
     ]  # fmt: skip
     if fit.gain:
         parts.append(
-            section("gain", "On records that were not used", _gain_table(fit),
-                    "Root mean square of what is left; the gain with its 95 % interval over resampled windows.")
+            section("gain", "Validation records", _gain_table(fit),
+                    "Root mean square of the residual; its reduction with a 95 % interval over resampled windows.")
         )  # fmt: skip
     if len(fit.records.identify.motions) > 1:
         figures["runs"] = [v for t in fit.wanted if (v := _runs_view(fit, t)) is not None]
         parts.append(
             figure("runs", "Record by record", figures["runs"],
-                   "What each record alone says, with two standard errors; the line is the common fit. Records that "
-                   "cannot tell a parameter are left out.", "low")
+                   "Fitted to each record alone, with two standard errors; the line is the common fit. Records "
+                   "from which a parameter is not identifiable are left out.", "low")
         )  # fmt: skip
     parts.append(
         figure("correlation", "What replaces what", figures["correlation"],
@@ -63,7 +63,7 @@ def bench_parts(result: BenchResult) -> tuple[list[str], Views]:
     )  # fmt: skip
     parts.append(
         section("surroundings", "Known within limits", _parameters(fit.surroundings, None),
-                "Fitted within what is declared of them, so that their doubt is part of every error above.")
+                "Fitted within what is declared of them, so that their uncertainty is part of every error above.")
     )  # fmt: skip
     if fit.left_out:
         items = "".join(

@@ -58,19 +58,19 @@ def flow_html(result: FlowResult) -> str:
             figure("fits", "Measured and fitted", figures["fits"],
                    "The ISO law, and the classic one with its discharge coefficient fitted; below, "
                    "measured less fitted.", "tall"),
-            figure("profiles", "How sharply the data speak", figures["profiles"],
+            figure("profiles", "Profile likelihood", figures["profiles"],
                    "How much worse the fit becomes when one parameter is held and all others are "
                    "fitted again, in units in which 3.84 is the 95 % limit. A curve that stays below "
-                   "it on one side leaves the parameter open there. The interval of C in the list is wider: it "
+                   "it on one side does not bound the parameter there. The interval of C in the list is wider: it "
                    "holds what is known within limits only, too.", "low"),
-            figure("correlation", "What replaces what", figures["correlation"],
+            figure("correlation", "Correlation", figures["correlation"],
                    "Correlation of the estimates of one record.", ""),
             section("records", "Every record", _records_table(result)),
             section("budget", "Uncertainty of C", _budget_table(result),
                     "One standard uncertainty of each part in percent of C (GUM: the fit by its "
                     "covariance with coloured residuals, limits as rectangular distributions)."),
         ]  # fmt: skip
-    parts.append(section("notes", "What the records prevent", _notes(result)))
+    parts.append(section("notes", "Limits of these records", _notes(result)))
     heat = (
         f"tank: constant temperature, heat ratios {result.heat_ratios[0]:g} in and "
         f"{result.heat_ratios[1]:g} out"

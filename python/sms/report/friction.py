@@ -42,14 +42,14 @@ def friction_html(result: FrictionResult) -> str:
         f'<p class="eyebrow">Friction identification · {esc(result.rig)}</p>'
         f"<h1>{esc(result.title)}</h1><ul class='said'>{said}</ul>",
         figure("map", "Friction over velocity", figures["map"],
-               "Measured: what pressures, inertia and the load leave over (eq. 6.4). Every law follows "
+               "Measured: pressure forces less inertia and load (eq. 6.4). Every law is evaluated along "
                "the same motion; below, measured less law.", "tall"),
         section("laws", "The laws", _laws_table(result),
-                "Root mean square of what a law leaves, in newtons."),
+                "Root mean square of each law's residual, in newtons."),
         section("parameters", f"Parameters of {EQUATION[result.best]}", _parameters_table(result),
-                "Standard errors hold for residuals that are alike within a stroke, and for runs that "
-                "differ: each is left out in turn. A run alone may tell a parameter badly that all "
-                "tell well together."),
+                "Standard errors allow for residuals correlated within a stroke, and for runs that differ "
+                "(jackknife). A parameter that is identifiable from all runs together need not be so from "
+                "one alone."),
     ]  # fmt: skip
     if runs:
         parts.append(
@@ -67,7 +67,7 @@ def friction_html(result: FrictionResult) -> str:
     )
     if not_shown:
         parts.append(
-            section("not-shown", "What this excitation cannot show", f"<ul class='said'>{not_shown}</ul>")
+            section("not-shown", "Not identifiable with this excitation", f"<ul class='said'>{not_shown}</ul>")
         )  # fmt: skip
     if result.findings:
         items = "".join(f"<li>{esc(str(f))}</li>" for f in result.findings)
@@ -121,7 +121,7 @@ def _parameters_table(result: FrictionResult) -> str:
         "parameter",
         "value ± standard error",
         "half of 95 %",
-        "runs alone scatter by",
+        "scatter of the runs alone",
         "shown",
     )
     return table("", headers, rows)

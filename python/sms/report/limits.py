@@ -27,9 +27,9 @@ def limits_html(found: Limits) -> str:
         for signal, size in found.noise.items()
     )
     lead = (
-        "Each number is the smallest size of an effect that one run of this experiment shows by three standard errors, "
-        "while everything that is declared as uncertain may move. The darker, the better for this effect. A dash: this "
-        f"run cannot show it; rest on it for the reason. Noise of one sample: {noise}, taken as white."
+        "Each number is the detection limit of an effect: three standard errors of its size from one run of this "
+        "experiment, with everything that is declared as uncertain fitted too. The darker, the lower. A dash: not "
+        f"identifiable from this run; hover over it for the reason. Noise of one sample: {noise}, taken as white."
     )
     numbers = "".join(
         f'<th scope="col" title="{esc(title)}">{number}</th>'

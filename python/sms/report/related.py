@@ -19,7 +19,7 @@ def related(diagnosis: Diagnosis) -> str:
     lead = (
         "The extended model fitted to all records of each rig. What stays the same when a part is "
         "changed belongs to the rest of the bench; what changes with it belongs to that part. "
-        "The same once more shows how much comes from mounting alone."
+        "The same parts mounted again show how much comes from mounting alone."
     )
     names = list(dict.fromkeys(p.name for r in rigs for p in r.parameters))
     scales = {name: _scale(name, rigs) for name in names}
@@ -69,5 +69,5 @@ def _cell(rig: Related, name: str, scale: Scale) -> str:
 
 def _differs(rig: Related) -> str:
     if rig.differs == REPEAT:
-        return "the same once more"
+        return "the same parts, mounted again"
     return f"other {rig.differs}" if rig.differs else "this rig"

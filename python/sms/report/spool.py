@@ -73,8 +73,8 @@ def _position_parts(fit: PositionFit, figures: dict[str, list[dict[str, Any]]]) 
                "Every sample, also those in motion, which lie beside the law; below, measured less law where the "
                "command rests or runs slowly."),
         section("spool-parameters", f"Parameters of {EQUATION[fit.best]}", _table(fit.law(fit.best)),
-                "Standard errors by the residual's own colour. The coefficients of a polynomial stand for each other "
-                "(see the correlation): use them together."),
+                "Standard errors allow for the autocorrelation of the residual. The coefficients of a polynomial are "
+                "strongly correlated: use them together."),
         figure("positions", "Measured and predicted position", figures["positions"],
                "The command, straight between its samples, through lag and static law; below, measured less "
                "predicted.", "tall"),
