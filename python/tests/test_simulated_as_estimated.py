@@ -13,8 +13,9 @@ Such an agreement needs that both take the same steps, and that nothing is unkno
   is held.
 - A delay is a whole number of steps: within one the simulation stops, the estimation takes the mean. A late clock is
   late by whole samples: the rest counts to first order.
-- Where a controller is simulated, the record has each of its samples, and there are no converters: the estimation
-  leaves out their steps, which are noise to it.
+- Where a controller is simulated, the record has each of its samples, and there are no electronics: the estimation
+  leaves out the steps of their converters, which are noise to it. Their filters agree as far as the finest converters
+  let them.
 - Friction sets in softly, so that the search for the initial state is not caught at its kink.
 
 Under a platform it is no rounding: the estimation evaluates the mechanism along the measured path (measured_path.hpp),
@@ -68,6 +69,7 @@ class Setting:
     kind: str
     law: str | None
     """Of the controller; None: the command is recorded."""
+    electronics: bool = False
 
     @property
     def period(self) -> float:
@@ -224,6 +226,7 @@ def bench(setting: Setting, machine: Machine, chambers: str) -> tuple[Simulated,
         return simulate_bench(
             command,
             controller=setting.law or "open_loop",
+            electronics=setting.electronics,
             extension=0.03,
             params=machine,
             chamber_law=chambers,
@@ -249,6 +252,7 @@ def platform(setting: Setting, machine: Machine, chambers: str) -> tuple[Simulat
         return simulate_platform(
             command,
             controller=setting.law or "open_loop",
+            electronics=setting.electronics,
             pose=(0.0, 0.0, 0.315 if low else 0.5),
             params=machine.legs,
             chamber_law=chambers,
@@ -282,6 +286,7 @@ def rig_of(folder: Path, setting: Setting, chambers: str) -> Rig:
     text += "".join(f'{s} = "{s}"\n' for s in names) + f'\n[model]\nchambers = "{chambers}"\n'
     if setting.law is not None:
         text += f'\n[control]\nloop = "closed"\ncontroller = "simulated"\nlaw = "{setting.law}"\n'
+        text += f"electronics = {str(setting.electronics).lower()}\n"
     text += f'\n[parameters]\ncontrol_period = "{setting.period} s"\n'
     text += '\n[[records]]\nfile = "run.csv"\nrole = "identify"\n'
     write_record(folder / "run.csv", {"time": np.arange(3.0)})
@@ -373,3 +378,18 @@ def test_a_simulated_effect_is_predicted_by_the_estimation(
         without = machine.copy()
         without[name] = base[name]
         assert difference < setting.share * left(runs, without), name
+
+
+@pytest.mark.parametrize("law", ["pid", "state_feedback"])
+@pytest.mark.parametrize("kind", ["bench", "platform"])
+def test_filters_of_the_electronics_are_those_of_the_estimation(
+    kind: str, law: str, tmp_path: Path
+) -> None:
+    setting, plain = Setting(kind, law, electronics=True), Setting(kind, law)
+    machine = changed(healthy(setting), {"adc_bits": 24.0, "pwm_steps": 1e9})
+    run, driven_by = SIMULATE[kind](setting, machine, "polytropic")
+    as_it_is = estimated(setting, run, driven_by, rig_of(tmp_path, setting, "polytropic"))
+    without = estimated(plain, run, driven_by, rig_of(tmp_path, plain, "polytropic"))
+    difference = left(as_it_is, machine)
+    assert difference < 1e-5
+    assert difference < 0.01 * left(without, machine)
