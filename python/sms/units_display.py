@@ -49,7 +49,7 @@ _SCALES: Mapping[str, tuple[tuple[float, DisplayUnit], ...]] = MappingProxyType(
         "Pa s": ((0.0, DisplayUnit("µPa s", 1e6)),),
         "Pa s/kg": ((0.0, DisplayUnit("bar s/kg", 1e-5)),),
         "Pa s^2/kg^2": ((0.0, DisplayUnit("bar s²/kg²", 1e-5)),),
-        "1/Pa": ((0.0, DisplayUnit("per bar", 1e5)),),
+        "1/Pa": ((0.0, DisplayUnit("% per bar", 1e7)),),
         "kg/(s Pa)": ((0.0, DisplayUnit("g/s per bar", 1e8)),),
         "kg/s": ((0.0, DisplayUnit("g/s", 1e3)),),
         "m/V": ((0.0, DisplayUnit("mm/V", 1e3)),),
