@@ -151,6 +151,11 @@ class Data:
     healthy: Healthy | None = None
     """What the model of the healthy machine leaves anyway; None without reference records."""
 
+    @property
+    def as_declared(self) -> Data:
+        """The same without what reference records told."""
+        return replace(self, healthy=None, unseen_of={}, refitted_of={})
+
     def allowed(self, runs: Runs) -> Discrepancy | None:
         """The healthy machine's own discrepancy on the records of a role; None where none told."""
         if self.healthy is None:

@@ -137,7 +137,7 @@ def investigate(
 ) -> Case:
     """Baseline, rounds and verdict: all that a trial needs."""
     progress("fitting the baseline", 0.05)
-    hypothesis = baseline_hypothesis(data, effects)
+    declared = hypothesis = baseline_hypothesis(data, effects)
     if data.reference is not None:
         hypothesis, data = from_reference(hypothesis, data)
     baseline = fit(hypothesis, data.identify, discrepancy=data.allowed(data.identify))
@@ -160,9 +160,10 @@ def investigate(
         outcome = replace(outcome, final=final, named=law is None)
     before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     if not adequate and not outcome.groups:
-        # An error of the tables would take a part of what one record has of its own.
-        plain = fit(hypothesis.with_exact_maps, data.identify)
-        found = inconsistency(plain, data, able, before.floor)
+        # An error of the tables would take a part of what one record has of its own; and records that contradict each
+        # other do so whatever the machine was like before.
+        plain = fit(declared.with_exact_maps, data.identify)
+        found = inconsistency(plain, data.as_declared, able, before.floor)
     verdict = decide(outcome, adequate) if found is None else "data-fault"
     return Case(data, baseline, outcome, before, after, least, blind, able, verdict, found, law)
 
