@@ -128,7 +128,7 @@ void bind_estimation(py::module_& m) {
   m.def("fit", &fit, py::arg("problem"), py::arg("start"), py::arg("free"), py::arg("weight") = Eigen::VectorXd(),
         py::arg("max_iterations") = 100, py::arg("tolerance") = 1e-12, py::arg("huber") = 0.0,
         "Least squares over the parameters free = [(name, lower, upper, pull), ...], by Huber's loss beyond `huber` "
-        "weighted units; ValueError for a bad start and for a parameter that the records do not feel.");
+        "weighted units; ValueError for a bad start and for a parameter to which the records are insensitive.");
 }
 
 }  // namespace sms_python

@@ -155,7 +155,7 @@ Eigen::VectorXd scales(const Aim& aim, const Answer& at_start) {
       continue;
     }
     if (!(aim.free[k].pull > 0.0)) {
-      throw std::invalid_argument(std::string("fit: these records do not feel ") +
+      throw std::invalid_argument(std::string("fit: these records are insensitive to ") +
                                   sms_param_describe(aim.free[k].index)->name + " at its start; leave it fixed");
     }
     scale[i] = aim.free[k].pull;

@@ -5,7 +5,7 @@
 // solved by Ceres (Levenberg-Marquardt, projected on the bounds) with the problem's exact derivatives. A parameter that
 // is known within a declared uncertainty is given that box, and a pull as weak as one sample: where the data has
 // nothing to say between two parameters, the one that is known stays where it is. One that is unknown gets the bounds
-// of params.def and no pull; if the residual does not feel it at all, the fit is refused.
+// of params.def and no pull; if the residual is insensitive to it, the fit is refused.
 //
 // Inside, each parameter is measured by how far it moves the residual (the norm of its column at the start), so that a
 // conductance of 1e-8 and a pressure of 5e5 converge alike.
@@ -44,7 +44,7 @@ struct Fit {
 };
 
 // weight (rows), or empty: all one. std::invalid_argument for a start outside the bounds, a wrong length of weight, a
-// residual that is not finite at the start, or a parameter without pull that the residual does not feel there.
+// residual that is not finite at the start, or a parameter without pull to which the residual is insensitive there.
 Fit fit(const Problem& problem, const Params<double>& start, const std::vector<FreeParam>& free,
         const Eigen::VectorXd& weight, const FitOptions& options = FitOptions());
 

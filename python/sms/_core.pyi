@@ -2796,7 +2796,7 @@ def firmware_settings() -> list[FirmwareSetting]:
     """
 def fit(problem: Problem, start: Params, free: collections.abc.Sequence[tuple[str, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex]], weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ..., max_iterations: typing.SupportsInt | typing.SupportsIndex = 100, tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-12, huber: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> Fit:
     """
-    Least squares over the parameters free = [(name, lower, upper, pull), ...], by Huber's loss beyond `huber` weighted units; ValueError for a bad start and for a parameter that the records do not feel.
+    Least squares over the parameters free = [(name, lower, upper, pull), ...], by Huber's loss beyond `huber` weighted units; ValueError for a bad start and for a parameter to which the records are insensitive.
     """
 def force_balance(params: Params, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pressure_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pressure_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], drive: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], deflection: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] = 0.0, law: str = 'acceleration_dependent') -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

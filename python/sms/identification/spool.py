@@ -259,7 +259,7 @@ def _fit_law(
 
 
 def _felt(problem: _core.SpoolProblem, params: _core.Params, names: Sequence[str]) -> list[Free]:
-    """A law that stays short of its end does not feel it."""
+    """A law that stays short of its end is insensitive to it."""
     _, jacobian = problem.evaluate(params, list(names))
     felt = np.linalg.norm(jacobian, axis=0) > 0.0
     return [Free.of(n) for n, f in zip(names, felt, strict=True) if f]

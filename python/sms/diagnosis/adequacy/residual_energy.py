@@ -62,9 +62,13 @@ class Left:
         energy = np.vstack([self.identify, self.validate])
         return np.asarray((energy if self.absolute else np.log1p(energy)).sum(axis=1))
 
+    def energy(self, role: Role) -> Array:
+        """(windows, channels)"""
+        return self.identify if role == "identify" else self.validate
+
     def excess(self, role: Role) -> float:
         """Mean square beyond the noise; beyond what the healthy machine's model leaves, where the unit is that."""
-        energy = self.identify if role == "identify" else self.validate
+        energy = self.energy(role)
         return max(float(np.mean(energy)) - 1.0, 0.0) if self.absolute else excess(energy)
 
 

@@ -3,10 +3,12 @@
 excitation             what a motion must contain for an effect to be identifiable
 identifiability        which effects these records can show at all
 score_test             score (Lagrange multiplier) tests of all effects, by one linear step
-multistart             fits from several initial values, for effects far from the present model
-candidates             one round: every effect tested, the promising ones fitted
-validation             judgement on the validation records, and ambiguity groups
+finite_steps           effects tried at finite sizes, on an excerpt of the records
+candidates             a trial of an effect; one round on a cylinder
+forward_selection      rounds on a cylinder until nothing more is found, and the verdict
+validation             judgement of a cylinder's trials on the validation records, and ambiguity groups
+stepwise               rounds on a simulated rig: selected forward, eliminated backward
+judgement              judgement of its trials on records of both roles, and ambiguity groups
 cross_validation       the same where the validation records are insensitive to an effect
-forward_selection      rounds until nothing more is found
-backward_elimination   causes judged in the presence of each other
+outcome                what the rounds brought
 """

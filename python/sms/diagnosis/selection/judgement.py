@@ -1,0 +1,201 @@
+"""Judgement of a round on a simulated rig: which of the fitted trials can be causes, and which cannot be told apart.
+
+Counted by window and signal (adequacy/residual_energy.py): by ranks of the windows, or, where records of the healthy
+machine told what residuals are worth, by likelihood.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import chi2, wilcoxon
+
+from sms.arrays import Array
+from sms.diagnosis.adequacy.residual_energy import ROLES, Left
+from sms.diagnosis.hypothesis import Data, Fitted, Healthy, refitted
+from sms.diagnosis.selection import cross_validation
+from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.thresholds import LEAST_SHARE, SIGNIFICANT, TELLS_APART, TWINS
+from sms.estimation.block_statistics import interval, resampled
+from sms.units_display import format_quantity
+
+
+def judge(
+    trials: Sequence[Trial],
+    current: Fitted,
+    data: Data,
+    original: float,
+    needed: float,
+    rng: np.random.Generator,
+) -> None:
+    """Whether each trial that was fitted can be a cause; fills gain, its interval, p_value, accepted, reason.
+
+    original: what the baseline left beyond the noise on the validation records. needed: share of what is left that a
+    cause must take.
+    """
+    before = Left.by(current, data)
+    part = before.excess("validate") / original if original > 0.0 else 1.0
+    counts = resampled(
+        data.validate.record, data.validate.window, rng
+    )  # (draws, windows), record by record
+    weights = counts / counts.sum(axis=1, keepdims=True)
+    needed = needed if data.healthy is None else LEAST_SHARE
+    for trial in trials:
+        if trial.fitted is current:
+            continue
+        after = Left.by(trial.fitted, data)
+        trial.lower = float((before.by_window - after.by_window).sum())
+        if data.healthy is None:
+            _by_windows(trial, before, after, weights, len(trials))
+        else:
+            _by_likelihood(trial, before, after, weights, len(trials), data.healthy)
+        low, high = (part * g for g in trial.gain_interval)
+        trial.share = (part * trial.gain, low, high)
+        if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
+            trial.cross_validated = True
+            disagreement = cross_validation.objection(
+                trial.fitted, current, data, 1.0, rng.spawn(1)[0]
+            )
+        else:
+            disagreement = ""
+        untenable = _untenable(trial, data) or disagreement
+        leaves_much = _leaves_much(trial, needed)
+        trial.partial = not untenable and bool(leaves_much)
+        trial.reason = untenable or leaves_much
+        trial.accepted = not trial.reason
+
+
+def _by_windows(trial: Trial, before: Left, after: Left, weights: Array, tried: int) -> None:
+    """Shares of what is left beyond the noise, and the chance that so many windows are better."""
+    excess = [(before.excess(role), after.excess(role)) for role in ROLES]
+    trial.seen_share, trial.gain = (1.0 - a / max(b, 1e-12) for b, a in excess)
+    was, now = (
+        np.maximum(weights @ left.validate - 1.0, 0.0).mean(axis=1) for left in (before, after)
+    )
+    trial.gain_interval = interval(1.0 - now / np.maximum(was, 1e-12))
+    lower = before.by_window - after.by_window
+    by_rank = tried * float(wilcoxon(lower, alternative="greater").pvalue)
+    trial.p_value = min(1.0, 2.0 * min(by_rank, trial.p_value))
+
+
+def _by_likelihood(
+    trial: Trial, before: Left, after: Left, weights: Array, tried: int, healthy: Healthy
+) -> None:
+    """The same where energies are in units of what the healthy machine's model leaves: a likelihood ratio.
+
+    Shares are of what there is beyond that, or of what the trial takes if that is more: an effect may be far smaller
+    than what its model leaves anyway, and still be seen, because it is there in every window.
+    """
+    taken = [float(np.mean(before.energy(role) - after.energy(role))) for role in ROLES]
+    beyond = [max(before.excess(r), t, 1e-12) for r, t in zip(ROLES, taken, strict=True)]
+    trial.seen_share, trial.gain = (max(t / b, -1.0) for t, b in zip(taken, beyond, strict=True))
+    again = (weights @ (before.validate - after.validate)).mean(axis=1)
+    low, high = np.clip(interval(again / beyond[1]), -1.0, 1.0)
+    trial.gain_interval = float(low), float(high)
+    ratio = max(taken[0], 0.0) * trial.identified.size / healthy.inflation
+    trial.p_value = min(1.0, tried * float(chi2.sf(ratio, len(trial.effect.parameters))))
+
+
+def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
+    """Whether the validation records change with the trial by less than is worth a word, and are no worse for it. With
+    records of the healthy machine the likelihood has counted them already: no worse is enough.
+    """
+    if data.healthy is not None:
+        return trial.gain > 0.0
+    honest = data.validate.kind.honest[0]
+    changed_by = cross_validation.change_on_validation(trial.fitted, current, data)
+    return trial.gain_interval[1] >= 0.0 and changed_by < honest
+
+
+def _untenable(trial: Trial, data: Data) -> str:
+    """Why the trial cannot be a cause, not even one among others; empty if there is nothing against it."""
+    for name in trial.effect.parameters:
+        value, declared = trial.fitted.params[name], trial.fitted.hypothesis.start[name]
+        beside = name != trial.effect.parameters[0]
+        if name not in trial.fitted.movable and not (beside and value == declared):
+            said = format_quantity(value, data.rig.table[name].unit, name)
+            return f"fits best at or beyond {said}, the end of what is plausible"
+    if trial.p_value > SIGNIFICANT:
+        return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
+    if trial.gain_interval[0] <= 0.0 and not trial.cross_validated:
+        return f"{_taken(trial)}, where it may be chance"
+    return ""
+
+
+def _leaves_much(trial: Trial, needed: float) -> str:
+    """That it takes less than it needs to of what is left, if so; of the identification records alone where the
+    validation records are insensitive to it.
+    """
+    if trial.cross_validated:
+        return _taken(trial) if trial.seen_share < needed else ""
+    kept = (1.0 - trial.seen_share) * (1.0 - trial.gain)
+    return _taken(trial) if kept > (1.0 - needed) ** 2 else ""
+
+
+def _taken(trial: Trial) -> str:
+    return (
+        f"takes {100.0 * trial.seen_share:.0f} % of what is left on the identification records and "
+        f"{100.0 * trial.gain:.0f} % on the validation records"
+    )
+
+
+def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+    """The best accepted trial, and those whose predictions change alike and are no worse; or none."""
+    accepted = sorted((t for t in trials if t.accepted), key=lambda t: -t.lower)
+    return _alike(accepted, current, data) if accepted else []
+
+
+def partial_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+    """The same of those whose only fault is that they leave too much: another cause may stand beside them."""
+    partial = sorted((t for t in trials if t.partial), key=lambda t: -t.lower)
+    return _alike(partial, current, data) if partial and data.healthy is not None else []
+
+
+def _alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+    """The best of them, and those whose predictions change alike and are no worse."""
+    best = accepted[0]
+    left = Left.by(best.fitted, data).by_window
+    members = [best]
+    for trial in accepted[1:]:
+        cosine = _similarity(best, trial, current, data)
+        worse = Left.by(trial.fitted, data).by_window - left
+        error = float(np.std(worse)) * np.sqrt(len(worse))
+        if cosine > TWINS and float(worse.sum()) <= TELLS_APART * error:
+            members.append(trial)
+    members = _plainest(members)
+    for trial in members:
+        _similarity(members[0], trial, current, data)
+        trial.support = 1.0 / len(members)
+    return members
+
+
+def _similarity(one: Trial, other: Trial, current: Fitted, data: Data) -> float:
+    """Cosine between two changes of all predictions; its magnitude is noted in both trials."""
+    a, b = _change(one, current, data), _change(other, current, data)
+    cosine = float(a @ b) / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
+    one.similarity[other.effect.key] = other.similarity[one.effect.key] = abs(cosine)
+    return cosine
+
+
+def _plainest(members: list[Trial]) -> list[Trial]:
+    """Of what cannot be told apart, that with the fewest parameters first; no effect again with more of them."""
+    order = sorted(members, key=lambda t: (len(t.effect.parameters), -t.lower))
+    return [
+        t
+        for t in order
+        if not any(
+            o.effect.id == t.effect.id and set(o.effect.parameters) < set(t.effect.parameters)
+            for o in order
+        )
+    ]
+
+
+def _change(trial: Trial, current: Fitted, data: Data) -> Array:
+    """(rows,): how the residual changes with the trial, fitted records first."""
+    return np.concatenate(
+        [
+            trial.fitted.fit.residual - current.fit.residual,
+            refitted(trial.fitted, data).fit.residual - refitted(current, data).fit.residual,
+        ]
+    )
