@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sms.arrays import Array
 from sms.diagnosis.hypothesis import (
     MOST_INFLATED,
     WIDE,
@@ -18,6 +19,7 @@ from sms.diagnosis.hypothesis import (
 )
 from sms.estimation.block_statistics import covariance_from, covariance_of
 from sms.estimation.nuisance import Joint
+from sms.estimation.windows import Runs
 
 SAME_MACHINE = 0.03
 """Of what is declared: by how much a number may differ between a day when the machine was well and today. Judgement: an
@@ -36,55 +38,61 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     assert data.reference is not None
     h, runs = hypothesis, data.reference
     fitted = fit_with_discrepancy(h, runs)
-    healthy = _healthy(fitted, data)
-    white = fitted.whiten(fitted.fit.jacobian)
+    jacobian = fitted.whiten(fitted.fit.jacobian)
+    residual = fitted.whiten(fitted.fit.residual)
     pull = weights_of(h, list(h.free))
-    told = covariance_from(white.T @ white / healthy.inflation + pull.T @ pull)
+    inflation = _inflation(jacobian, residual, pull, runs)
+    told = covariance_from(jacobian.T @ jacobian / inflation + pull.T @ pull)
     names = [n for n in h.free if n in h.known]
     place = [list(h.free).index(n) for n in names]
     drift = np.diag([(SAME_MACHINE * h.known[n]) ** 2 for n in names])
-    covariance = np.asarray(told[np.ix_(place, place)] + drift)
+    joint = Joint(tuple(names), np.asarray(told[np.ix_(place, place)] + drift))
+    deviation = {
+        n: float(s) for n, s in zip(names, np.sqrt(np.diag(joint.covariance)), strict=True)
+    }
     start, free = h.start.copy(), dict(h.free)
     for name in h.free:
         start[name] = fitted.params[name]
-    for name, variance in zip(names, np.diag(covariance), strict=True):
-        room, bounds = WIDE * float(np.sqrt(variance)), h.table[name]
-        free[name] = (max(bounds.lower, start[name] - room), min(bounds.upper, start[name] + room))
-    known = h.known | dict(zip(names, map(float, np.sqrt(np.diag(covariance))), strict=True))
-    joint = Joint(tuple(names), covariance)
-    told_by = replace(
-        h, start=start, free=free, known=known, joint=joint, inflation=healthy.inflation
-    )
-    return told_by, replace(data, healthy=healthy)
+    for name, sigma in deviation.items():
+        low, high = start[name] - WIDE * sigma, start[name] + WIDE * sigma
+        free[name] = max(h.table[name].lower, low), min(h.table[name].upper, high)
+    known = h.known | deviation
+    machine = replace(h, start=start, free=free, known=known, joint=joint, inflation=inflation)
+    return machine, replace(data, healthy=_healthy(fitted, residual, data, inflation))
 
 
-def _healthy(fitted: Fitted, data: Data) -> Healthy:
-    """What a fit to the reference records leaves of them, carried over to the others."""
-    assert data.reference is not None and fitted.discrepancy is not None
-    runs, tau = data.reference, fitted.discrepancy.tau
-    white = fitted.whiten(np.column_stack([fitted.fit.jacobian, fitted.fit.residual]))
-    jacobian, residual = white[:, :-1], white[:, -1]
-    pull = weights_of(fitted.hypothesis, list(fitted.hypothesis.free))
+def _inflation(jacobian: Array, residual: Array, pull: Array, runs: Runs) -> float:
+    """By what factor the variance of an estimate is larger by the scatter of blocks than by whitened residuals: the
+    geometric mean over the parameters."""
     noise = np.diag(covariance_from(jacobian.T @ jacobian + pull.T @ pull))
     blocks = np.diag(covariance_of(jacobian, residual, runs.block))
-    ratio = np.clip(blocks[noise > 0.0] / noise[noise > 0.0], 1.0, MOST_INFLATED**2)
+    seen = noise > 0.0
+    ratio = np.clip(blocks[seen] / noise[seen], 1.0, MOST_INFLATED**2)
+    return float(np.exp(np.mean(np.log(ratio))))
+
+
+def _healthy(fitted: Fitted, white: Array, data: Data, inflation: float) -> Healthy:
+    """What a fit to the reference records leaves of them, carried over to the others. white (rows,): its residual."""
+    assert data.reference is not None and fitted.discrepancy is not None
+    runs, tau = data.reference, fitted.discrepancy.tau
     level, plain = np.ones((2, len(data.identify.channels)))
     spread = np.zeros(len(data.identify.channels))
     for c, name in enumerate(data.identify.channels):
-        if name in runs.channels:
-            of_channel = runs.channel == runs.channels.index(name)
-            by_record = [
-                float(np.mean(residual[of_channel & (runs.record == r)] ** 2))
-                for r in range(len(runs.motions))
-            ]
-            level[c] = np.mean(residual[of_channel] ** 2)
-            plain[c] = np.mean(fitted.fit.residual[of_channel] ** 2)
-            spread[c] = max(by_record) / level[c] - 1.0
+        if name not in runs.channels:
+            continue
+        of_channel = runs.channel == runs.channels.index(name)
+        by_record = [
+            float(np.mean(white[of_channel & (runs.record == r)] ** 2))
+            for r in range(len(runs.motions))
+        ]
+        level[c] = np.mean(white[of_channel] ** 2)
+        plain[c] = np.mean(fitted.fit.residual[of_channel] ** 2)
+        spread[c] = max(by_record) / level[c] - 1.0
     return Healthy(
         data.identify.discrepancy_of(fitted.params, tau),
         data.validate.discrepancy_of(fitted.params, tau),
         level,
         plain,
         spread,
-        float(np.exp(np.mean(np.log(ratio)))),
+        inflation,
     )
