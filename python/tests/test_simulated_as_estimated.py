@@ -148,6 +148,7 @@ FIRST = {
     "polytropic_index": 1.1,
     "compression_heat_ratio": 1.3,
     "sensor_lag_extension": 0.02,
+    "sensor_offset_extension": 2.5e-3,
     "pressure_friction": 5e-5,
     "piston_leakage": 3e-9,
     "chamber_leakage_lower": 3e-9,
