@@ -138,21 +138,25 @@ class SimulatedController final : public ValveDrive<S> {
     fed_ = simulated_;
   }
 
-  // Spool and drive where the window begins: they follow the command alone, and are run up over the 50 ms before.
+  // Spool and drive where the window begins: they follow the command alone, and are run up over the 50 ms before, in stiff steps.
   void begin(ActuatorState<S>& a) override {
     const int first = window_.first * grid_.steps;
     const int run_up = std::min(first, static_cast<int>(0.05 / value_of(h_)) + 1);
-    ActuatorState<S> k1{}, k2{}, moved{};
+    const DriveStiffness<S> slopes = drive_stiffness(p_, laws_.drive);
+    const S g = stiff_share<S>() * h_;
+    const auto solve = [&](ActuatorState<S>& rate) { solve_drive(slopes, g, rate); };
+    const auto rates = [&](const ActuatorState<S>& at, ActuatorState<S>& rate) {
+      rate = ActuatorState<S>{};
+      drive_rates(p_, laws_, at, mean_, rate);
+      return SMS_OK;
+    };
     mean_ = run_up > 0 ? arriving(first - run_up) : p_.command_offset;
     a.spool = a.drive = {mean_, S(0)};
     for (int q = first - run_up; q < first; ++q) {
       mean_ = arriving(q);
-      drive_rates(p_, laws_, a, mean_, k1);
-      moved.spool = stepped(a.spool, k1.spool, h_);
-      moved.drive = stepped(a.drive, k1.drive, h_);
-      drive_rates(p_, laws_, moved, mean_, k2);
-      a.spool = stepped(stepped(a.spool, k1.spool, S(0.5) * h_), k2.spool, S(0.5) * h_);
-      a.drive = stepped(stepped(a.drive, k1.drive, S(0.5) * h_), k2.drive, S(0.5) * h_);
+      ActuatorState<S> rate;
+      rates(a, rate);
+      stiff_step(rates, solve, h_, rate, a);
     }
   }
 
@@ -204,10 +208,6 @@ class SimulatedController final : public ValveDrive<S> {
     const int j = static_cast<int>(ceil(value_of(from) / grid_.every)) - 1;
     const S before = S((j + 1) * grid_.every) - from;  // steps until the next command arrives
     return before < S(1) ? before * sent(j) + (S(1) - before) * sent(j + 1) : sent(j);
-  }
-
-  static Lag<S> stepped(const Lag<S>& lag, const Lag<S>& rate, const S& time) {
-    return {lag.value + time * rate.value, lag.rate + time * rate.rate};
   }
 
   const Params<S>& p_;

@@ -51,7 +51,7 @@ void BenchEquations::errors(Params<S> params, S* out) const {
     const ActuatorTruth<S> next = actuator_truth(p, signals, k + 1, step);
     follow_film(p, now, next, step, state.actuator);
     reservoir = reservoir_after<S>(p, reservoir, t.actuator.flow.drawn, step);
-    follow<S>(p, laws_.friction, p.moving_mass, step, t.actuator, rate, state.actuator);
+    follow<S>(p, laws_, p.moving_mass, step, t.actuator, rate, state.actuator);
     now = next;
   }
 }

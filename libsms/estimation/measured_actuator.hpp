@@ -62,9 +62,9 @@ Lag<S> spool_at_sample(const Params<S>& p, const Eigen::VectorXd& command, int s
 
 // What no sensor sees but spool, film and reservoir, a sample later. `rate` is used up.
 template <typename S>
-void follow(const Params<S>& p, FrictionLaw law, const S& mass, double step, const ActuatorTerms<S>& t,
+void follow(const Params<S>& p, const ActuatorLaws& laws, const S& mass, double step, const ActuatorTerms<S>& t,
             BenchState<S>& rate, ActuatorState<S>& state) {
-  solve_stiff<S>(actuator_stiffness<S>(p, law, mass, t), S(step), rate);
+  solve_stiff<S>(actuator_stiffness<S>(p, laws, mass, t), S(step), rate);
   state.deflection += S(step) * rate.actuator.deflection;
   state.lower.temperature += S(step) * rate.actuator.lower.temperature;
   state.upper.temperature += S(step) * rate.actuator.upper.temperature;

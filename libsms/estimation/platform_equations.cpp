@@ -119,7 +119,7 @@ void PlatformEquations::errors(const LegParams<S>& params, S* out) const {
       const std::size_t leg = static_cast<std::size_t>(i);
       follow_film(p, now[leg], truths[static_cast<std::size_t>(k + 1)][leg], step, state.leg[i].actuator);
       reservoir(i) = reservoir_after<S>(p, reservoir(i), t.actuator[i].flow.drawn, step);
-      follow<S>(p, laws_.friction, S(place.mass(i, i)), step, t.actuator[i], rate.leg[i], state.leg[i].actuator);
+      follow<S>(p, laws_, S(place.mass(i, i)), step, t.actuator[i], rate.leg[i], state.leg[i].actuator);
     }
   }
 }

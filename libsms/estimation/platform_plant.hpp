@@ -231,7 +231,7 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
       }
       ActuatorStiffness<S> slopes[3];
       for (int i = 0; i < 3; ++i) {
-        slopes[i] = actuator_stiffness<S>(machines.leg[i], laws_.friction,
+        slopes[i] = actuator_stiffness<S>(machines.leg[i], laws_,
                                           S(path.points[static_cast<std::size_t>(k)].mass(i, i)), t.actuator[i]);
       }
       const auto solve = [&](Pistons<S>& y) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimation/recorded_signal.hpp"
+#include "sms/integrate_stiff.hpp"
 #include "sms/sensor.hpp"
 #include "sms/valve.hpp"
 
@@ -80,18 +81,22 @@ class RecordedVoltage {
   // V, within that step.
   S at(double at) const { return is_held() ? mean_ : detail::command_at<S>(command_, S(at) - late_); }
 
-  // The spool at `first`: it follows the command alone, and is run up over the 50 ms before, in steps of h.
+  // The spool at `first`: it follows the command alone, and is run up over the 50 ms before, in stiff steps of h.
   Lag<S> spool(const Params<S>& p, double first, const S& h) {
     const int run_up = static_cast<int>(0.05 / value_of(h)) + 1;
+    const S omega = angular_frequency(p.valve_frequency), g = stiff_share<S>() * h;
+    const auto solve = [&](Lag<S>& k) { solve_lag<S>(omega, p.valve_damping_ratio, g, k); };
     begin_step(first - double(run_up) / steps_);
     Lag<S> spool{at(first - double(run_up) / steps_), S(0)};
     for (int i = -run_up; i < 0; ++i) {
       const double now = first + double(i) / steps_;
       begin_step(now);
-      const Lag<S> k1 = spool_rate(p, spool, at(now));
-      const Lag<S> moved{spool.value + h * k1.value, spool.rate + h * k1.rate};
-      const Lag<S> k2 = spool_rate(p, moved, at(now + 1.0 / steps_));
-      spool = {spool.value + S(0.5) * h * (k1.value + k2.value), spool.rate + S(0.5) * h * (k1.rate + k2.rate)};
+      const auto end_rate = [&](const Lag<S>& moved, Lag<S>& rate) {
+        rate = spool_rate(p, moved, at(now + 1.0 / steps_));
+        return SMS_OK;
+      };
+      Lag<S> rate = spool_rate(p, spool, at(now));
+      stiff_step(end_rate, solve, h, rate, spool);
     }
     return spool;
   }

@@ -37,6 +37,8 @@ inline constexpr ActuatorLaws published_laws() {
 
 template <typename S>
 struct ActuatorState {
+  using Scalar = S;
+
   Gas<S> lower;
   Gas<S> upper;
   Lag<S> spool;       // as the command that would hold it there: V, V/s

@@ -50,6 +50,7 @@ S low_pass_ramp_step(const S& omega, const S& dt, const S& weight, const S& valu
 
 template <typename S>
 struct Lag {
+  using Scalar = S;
   S value;
   S rate;  // per second
 };
@@ -57,6 +58,14 @@ struct Lag {
 template <typename S>
 Lag<S> lag_rate(const S& omega, const S& damping_ratio, const Lag<S>& lag, const S& input) {
   return {lag.rate, omega * (omega * (input - lag.value) - S(2) * damping_ratio * lag.rate)};
+}
+
+// k with (I - g A) k = rate, where A is the lag's own matrix: its part in the step of a stiff integrator.
+template <typename S>
+void solve_lag(const S& omega, const S& damping_ratio, const S& g, Lag<S>& rate) {
+  const S turn = g * omega;
+  rate.rate = (rate.rate - turn * omega * rate.value) / (S(1) + turn * (S(2) * damping_ratio + turn));
+  rate.value += g * rate.rate;
 }
 
 // The exact step over a fixed dt: (value - input, rate) is multiplied by a constant matrix.

@@ -1,14 +1,15 @@
 // A plant through time where it is stiff, in steps of a fixed size.
 //
 // Friction inside its ramp is stiff (38 N over 5 mm/s on 3.6 kg: 0.3 ms), and so are a chamber that is nearly closed, a
-// reservoir behind a short line and the contact at an end. A Rosenbrock method of second order with an approximate
+// reservoir behind a short line, a spool of some 100 Hz and the contact at an end. A Rosenbrock method of second order with an approximate
 // Jacobian A (ROS2; Verwer, Spee, Blom and Hundsdorfer 1999) stays stable there and keeps its order whatever A is:
 //
 //   (I - gamma h A) k1 = f(t, y)
 //   (I - gamma h A) k2 = f(t + h, y + h k1) - 2 k1,      y + h (3 k1 + k2) / 2,      gamma = 1 - 1/sqrt(2)
 //
 // A has the slope of friction and contact for (x, v), that of the film for its own speed and the piston's, a chamber's flow
-// over its pressure difference for each pressure, and in a tank the exchange of its air for the temperature.
+// over its pressure difference for each pressure, the spool and the filter in front of it each as it is, and in a tank the
+// exchange of its air for the temperature.
 //
 // Two evaluations a step, and in Jets the exact derivatives of the discrete solution: what is held against records
 // window by window takes these steps.
@@ -54,6 +55,31 @@ S flow_secant(const S& flow, const S& from, const S& to) {
   return abs(flow) / (difference > S(100) ? difference : S(100));
 }
 
+// ---- what follows the command alone ----
+
+template <typename S>
+struct DriveStiffness {
+  S spool;  // natural frequency, rad/s
+  S spool_damping_ratio;
+  S filter;  // zero where there is none
+  S filter_damping_ratio;
+};
+
+template <typename S>
+DriveStiffness<S> drive_stiffness(const Params<S>& p, DriveLaw law) {
+  const bool filtered = law == DriveLaw::filtered;
+  return {angular_frequency(p.valve_frequency), p.valve_damping_ratio,
+          filtered ? angular_frequency(p.dac_filter_frequency) : S(0), p.dac_filter_damping_ratio};
+}
+
+template <typename S>
+void solve_drive(const DriveStiffness<S>& s, const S& g, ActuatorState<S>& rate) {
+  solve_lag<S>(s.spool, s.spool_damping_ratio, g, rate.spool);
+  if (s.filter > S(0)) {
+    solve_lag<S>(s.filter, s.filter_damping_ratio, g, rate.drive);
+  }
+}
+
 // ---- an actuator that moves a mass ----
 
 template <typename S>
@@ -65,13 +91,16 @@ struct ActuatorStiffness {
   S reservoir;
   S deflection;
   S film;  // d w'/d w, and with the other sign d w'/d v
+  DriveStiffness<S> drive;
 };
 
 // `mass` in kg.
 template <typename S>
-ActuatorStiffness<S> actuator_stiffness(const Params<S>& p, FrictionLaw law, const S& mass, const ActuatorTerms<S>& a) {
+ActuatorStiffness<S> actuator_stiffness(const Params<S>& p, const ActuatorLaws& laws, const S& mass,
+                                        const ActuatorTerms<S>& a) {
   using std::abs;
   using std::cos;
+  const FrictionLaw law = laws.friction;
   const S& extension = a.piston.extension;
   const S speed = abs(a.piston.velocity);
   S damping = p.viscous_friction;
@@ -103,12 +132,13 @@ ActuatorStiffness<S> actuator_stiffness(const Params<S>& p, FrictionLaw law, con
                      ? S(-(speed * p.bristle_stiffness / p.coulomb_force))
                      : S(0);
   s.film = film_is_state(p) ? S(-(S(1) / p.friction_lag)) : S(0);
+  s.drive = drive_stiffness(p, laws.drive);
   return s;
 }
 
 // `acceleration`: of the piston, solved for.
 template <typename S>
-void solve_air_and_seals(const ActuatorStiffness<S>& s, const S& g, const S& acceleration, ActuatorState<S>& rate) {
+void solve_beside_motion(const ActuatorStiffness<S>& s, const S& g, const S& acceleration, ActuatorState<S>& rate) {
   rate.lower.pressure /= S(1) - g * s.lower;
   rate.upper.pressure /= S(1) - g * s.upper;
   rate.supply_pressure /= S(1) - g * s.reservoir;
@@ -116,6 +146,7 @@ void solve_air_and_seals(const ActuatorStiffness<S>& s, const S& g, const S& acc
   if (s.film < S(0)) {
     rate.film = (rate.film - g * s.film * acceleration) / (S(1) - g * s.film);
   }
+  solve_drive(s.drive, g, rate);
 }
 
 // k with (I - g A) k = rate
@@ -124,12 +155,12 @@ void solve_stiff(const ActuatorStiffness<S>& s, const S& g, BenchState<S>& rate)
   rate.velocity = (rate.velocity + g * s.motion_position * rate.extension) /
                   (S(1) - g * s.motion_velocity - g * g * s.motion_position);
   rate.extension = rate.extension + (s.motion_position < S(0) ? S(g * rate.velocity) : S(0));
-  solve_air_and_seals(s, g, rate.velocity, rate.actuator);
+  solve_beside_motion(s, g, rate.velocity, rate.actuator);
 }
 
 template <typename S>
 ActuatorStiffness<S> stiffness(const Bench<S>& bench, const BenchState<S>&, const BenchTerms<S>& t) {
-  return actuator_stiffness(bench.params, bench.laws.friction, bench.params.moving_mass, t.actuator);
+  return actuator_stiffness(bench.params, bench.laws, bench.params.moving_mass, t.actuator);
 }
 
 // ---- three of them under the platform ----
@@ -145,7 +176,7 @@ template <typename S>
 PlatformStiffness<S> stiffness(const Platform<S>& platform, const PlatformState<S>&, const PlatformTerms<S>& t) {
   PlatformStiffness<S> s;
   for (int i = 0; i < 3; ++i) {
-    s.leg[i] = actuator_stiffness<S>(platform.params[i], platform.laws.friction, S(1), t.actuator[i]);
+    s.leg[i] = actuator_stiffness<S>(platform.params[i], platform.laws, S(1), t.actuator[i]);
   }
   s.mass = t.dynamics.mass_matrix;
   s.slope = t.dynamics.motion.extension_slope;
@@ -169,7 +200,7 @@ void solve_stiff(const PlatformStiffness<S>& s, const S& g, PlatformState<S>& ra
   }
   const Vec3<S> along = s.slope * rate.rate;
   for (int i = 0; i < 3; ++i) {
-    solve_air_and_seals<S>(s.leg[i], g, along(i), rate.actuator[i]);
+    solve_beside_motion<S>(s.leg[i], g, along(i), rate.actuator[i]);
   }
 }
 
@@ -180,6 +211,8 @@ struct TankStiffness {
   S pressure;     // d p'/d p
   S temperature;  // d T'/d T
   S reservoir;    // d p_R'/d p_R
+  S spool;        // natural frequency, rad/s
+  S spool_damping_ratio;
 };
 
 template <typename S>
@@ -194,6 +227,8 @@ TankStiffness<S> stiffness(const Tank<S>& tank, const TankState<S>& state, const
   s.temperature = -(of_air * (t.flow.in + t.flow.out) / (thin * t.space.volume));
   const S line = supply_line_slope<S>(p, p.supply_pressure - state.supply_pressure);
   s.reservoir = p.supply_line_resistance > S(0) ? S(-(stiff_air / p.reservoir_volume * (S(1) / line + feed))) : S(0);
+  s.spool = angular_frequency(p.valve_frequency);
+  s.spool_damping_ratio = p.valve_damping_ratio;
   return s;
 }
 
@@ -202,6 +237,7 @@ void solve_stiff(const TankStiffness<S>& s, const S& g, TankState<S>& rate) {
   rate.gas.pressure /= S(1) - g * s.pressure;
   rate.gas.temperature /= S(1) - g * s.temperature;
   rate.supply_pressure /= S(1) - g * s.reservoir;
+  solve_lag<S>(s.spool, s.spool_damping_ratio, g, rate.spool);
 }
 
 }  // namespace sms

@@ -30,17 +30,6 @@ class InWindows(TypedDict):
     threads: int
 
 
-SPOOL_STEP = 2.0
-"""Radians of the spool's natural frequency in a step of the integration. Numerics: with more, the explicit part of the
-method is unstable, and the spool runs to its stops."""
-
-
-def step_for(rig: Rig, longest_step: float) -> float:
-    """s: a step of the integration, for the fastest spool that the rig file allows."""
-    spool = rig.declared("valve_frequency")
-    return min(longest_step, SPOOL_STEP / (2.0 * np.pi * (spool.value + spool.uncertainty)))
-
-
 def in_windows(rig: Rig, longest_step: float) -> InWindows:
     """The laws of the rig file; longest_step, s, of the integration; threads as SMS_THREADS says."""
     return {
@@ -48,7 +37,7 @@ def in_windows(rig: Rig, longest_step: float) -> InWindows:
         "valve": rig.model.valve,
         "chambers": rig.model.chambers,
         "window": WINDOW,
-        "longest_step": step_for(rig, longest_step),
+        "longest_step": longest_step,
         "threads": int(os.environ.get("SMS_THREADS", "2")),
     }
 

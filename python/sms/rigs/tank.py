@@ -16,7 +16,7 @@ from sms.estimation.run import Run
 from sms.estimation.run import make_run as make_any_run
 from sms.io.records import Record
 from sms.io.rig import Rig
-from sms.rigs.pneumatic import record_of_simulation, step_for
+from sms.rigs.pneumatic import record_of_simulation
 
 SHORTEST, LONGEST, PER_RECORD = 1.0, 5.0, 5.0
 """s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does,
@@ -24,7 +24,7 @@ and the longer a window, the less its initial temperature can imitate a wrong fl
 TABLES = {2e5: "iso_0_2_mpa", 4e5: "iso_0_4_mpa"}
 """Gauge pressure of the supply, Pa, at which a table of the valve was measured."""
 LONGEST_STEP = 1e-3
-"""s: of the integration; the spool of 65 Hz needs it."""
+"""s: of the integration."""
 HIDDEN = {"flow of the tank": "kg/s", "supply pressure": "Pa"}
 OUTPUTS = ("tank_pressure", "tank_temperature", "supply_pressure")
 
@@ -38,7 +38,7 @@ def make_problem(
         noise={s: noise[s] for s in OUTPUTS},
         chambers=rig.model.chambers,
         window=max(run.window or SHORTEST for run in runs),
-        longest_step=step_for(rig, LONGEST_STEP),
+        longest_step=LONGEST_STEP,
         threads=int(os.environ.get("SMS_THREADS", "2")),
     )
 
