@@ -215,7 +215,7 @@ def fit(
     """
     free = free_of(hypothesis)
     names = [f.name for f in free]
-    columns = None if slopes is None else np.column_stack([slopes[n] for n in names])
+    columns = np.column_stack([slopes[n] for n in names]) if slopes and names else None
     pull = weights_of(hypothesis, names)
     found = runs.fit(initial or hypothesis.start, free, pull, most_steps, columns, discrepancy)
     fitted = Fitted(hypothesis, found, np.empty((0, 0)), discrepancy)

@@ -76,6 +76,10 @@ TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3
 """Effects that are fitted in a round, by what finite steps and by what linear steps promise. Run time."""
 CANDIDATE_STEPS = 2
 """Jacobians in the fit of a candidate; that of the one that is chosen goes on. Run time."""
+PAIRED = 5
+"""Effects of a round that are fitted two at a time where none stands alone: those that promise most. Run time."""
+PAIR_STEPS = 4
+"""Jacobians in the fit of two effects: they have farther to go than one. Run time."""
 LEAST_SHARE = 0.5
 """Of what is left beyond the noise: what a cause must take. Judgement: most of it."""
 NEARLY_ALL = 0.85
@@ -174,3 +178,7 @@ FEWEST_WINDOWS = 6
 """Windows of a role. Judgement: fewer give no scatter between windows."""
 DIFFERENCE = 1e-5
 """Of a number's scale: the step of a central difference. Numerics: near the cube root of the rounding error."""
+INTEGRATION_ERROR = 1.0
+"""Standard errors by which half the step of the integration may move an estimate at the most. Judgement."""
+MOST_HALVINGS = 6
+"""Of a sample's length, until then. Run time."""

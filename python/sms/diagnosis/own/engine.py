@@ -71,6 +71,8 @@ def diagnose_model(
     a record or less, since windows are what judgements count. seed and empirical as in `diagnose`. InputError for
     records that do not fit the model.
     """
+    if not window > 0.0:
+        raise InputError(f"{model.title}: window is {window:g} s; it must be positive")
     faults = check(model, records)
     rig = _rig_of(model)
     blank = Diagnosis(
@@ -89,7 +91,9 @@ def diagnose_model(
         return replace(blank, verdict="data-fault", sentence=wording.data_fault(faults))
     rng = np.random.default_rng(seed)
     runs = [_run_of(model, record) for record in records]
-    data = preparation.split(rig, _kind_of(model, window), runs, _noise_of(model, runs))
+    noise = _noise_of(model, runs)
+    model = _problem_of(model, runs, noise, window).with_fine_step()
+    data = preparation.split(rig, _kind_of(model, window), runs, noise)
     fewest = min(len(part.problem.windows) for part in (data.identify, data.validate))
     if fewest < FEWEST_WINDOWS:
         raise InputError(
@@ -134,17 +138,13 @@ def _rig_of(model: Model) -> OwnRig:
 
 
 def _kind_of(model: Model, window: float) -> Kind:
-    if not window > 0.0:
-        raise InputError(f"{model.title}: window is {window:g} s; it must be positive")
     unit_of = {s.equation: f"{s.unit}/s" for s in model.states if s.equation}
     signals = {s.name: s.unit for s in model.signals}
 
     def make_problem(
         rig: Rig, runs: Sequence[Run], channels: Sequence[str], noise: Mapping[str, float]
     ) -> WindowProblem:
-        stretches = [_stretch_of(model, run) for run in runs]
-        sigma = np.array([noise[o.name] for o in model.outputs])
-        return cast(WindowProblem, ShootingProblem(model, stretches, sigma, window))
+        return cast(WindowProblem, _problem_of(model, runs, noise, window))
 
     return Kind(
         outputs=tuple(o.name for o in model.outputs),
@@ -156,6 +156,15 @@ def _kind_of(model: Model, window: float) -> Kind:
         units=signals | {"time": "s"},
         short=0.0,
         honest=(0.3, 0.6),  # wider than that of machines whose simulations were held against others
+    )
+
+
+def _problem_of(
+    model: Model, runs: Sequence[Run], noise: Mapping[str, float], window: float
+) -> ShootingProblem:
+    stretches = [_stretch_of(model, run) for run in runs]
+    return ShootingProblem(
+        model, stretches, np.array([noise[o.name] for o in model.outputs]), window
     )
 
 

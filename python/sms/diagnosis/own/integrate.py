@@ -29,7 +29,8 @@ class Batch:
 def simulate(model: Model, values: Values, batch: Batch, push: Push | None = None) -> Array:
     """Predicted readings (samples, outputs, n). Not finite where the model cannot go on."""
     samples, _, n = batch.inputs.shape
-    inner = max(1, int(np.ceil(float(batch.step.max()) / model.longest_step - 1e-9)))
+    longest = model.longest_step or np.inf
+    inner = max(1, int(np.ceil(float(batch.step.max()) / longest - 1e-9)))
     h = batch.step / inner
     held = np.array([i.held for i in model.inputs], dtype=bool)[:, None]
     x = batch.start

@@ -11,7 +11,6 @@ and everything must be computed by numpy functions that work element by element 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -135,8 +134,9 @@ class Model:
     output: Equation
     effects: Sequence[Effect]
     title: str = "own model"
-    longest_step: float = math.inf
-    """s: of the integration (Runge-Kutta, fourth order); a sample's length if that is shorter."""
+    longest_step: float | None = None
+    """s: of the integration (Runge-Kutta, fourth order); a sample's length if that is shorter. None: a sample's length,
+    halved until that moves no estimate by more than its standard error."""
     guess: Guess | None = None
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ simulation for all parameters together.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.own.integrate import Batch, simulate
 from sms.diagnosis.own.model import Model, Values
-from sms.diagnosis.thresholds import DIFFERENCE
+from sms.diagnosis.thresholds import DIFFERENCE, INTEGRATION_ERROR, MOST_HALVINGS
 
 Thing = TypeVar("Thing")
 LARGEST_BATCH = 4000
@@ -126,6 +126,26 @@ class ShootingProblem:
                 slope = (found[..., 2 * k + 1, :] - found[..., 2 * k, :]) / (2.0 * size[k])
                 columns[:, first + k] = self._flat(self._off(shot, slope))
         return columns
+
+    def with_fine_step(self) -> Model:
+        """The model with its longest step; without one it is found from the predictions as declared.
+
+        A change of all predictions by one standard deviation of their noise in all moves no estimate by more than its
+        standard error.
+        """
+        if self.model.longest_step is not None:
+            return self.model
+        values, step = self.model.values(), float(self._step.max())
+        before = self._errors(values, self._start)
+        for _ in range(MOST_HALVINGS):
+            self.model = replace(self.model, longest_step=0.5 * step)
+            now = self._errors(values, self._start)
+            change = np.where(np.isfinite(now - before), now - before, np.inf)[:, :, 0]
+            if np.sum(change**2) < INTEGRATION_ERROR**2:
+                break
+            step, before = 0.5 * step, now
+        self.model = replace(self.model, longest_step=step)
+        return self.model
 
     # ---- simulations, side by side ---------------------------------------------------------------
 

@@ -28,12 +28,14 @@ def judge(
     original: float,
     needed: float,
     rng: np.random.Generator,
+    tried: int | None = None,
 ) -> None:
     """Whether each trial that was fitted can be a cause; fills gain, its interval, p_value, accepted, reason.
 
     original: what the baseline left beyond the noise on the validation records. needed: share of what is left that a
-    cause must take.
+    cause must take. tried: how many there were to choose from; None: as many as trials.
     """
+    tried = tried or len(trials)
     before = Left.by(current, data)
     part = before.excess("validate") / original if original > 0.0 else 1.0
     counts = resampled(
@@ -47,11 +49,11 @@ def judge(
         after = Left.by(trial.fitted, data)
         trial.lower = float((before.by_window - after.by_window).sum())
         if data.healthy is None:
-            _by_windows(trial, before, after, weights, len(trials))
+            _by_windows(trial, before, after, weights, tried)
         else:
-            _by_likelihood(trial, before, after, weights, len(trials), data.healthy)
-        low, high = (part * g for g in trial.gain_interval)
-        trial.share = (part * trial.gain, low, high)
+            _by_likelihood(trial, before, after, weights, tried, data.healthy)
+        low, high = (min(part * g, 1.0) for g in trial.gain_interval)
+        trial.share = (min(part * trial.gain, 1.0), low, high)
         if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
             trial.cross_validated = True
             disagreement = cross_validation.objection(
@@ -60,9 +62,7 @@ def judge(
         else:
             disagreement = ""
         untenable = _untenable(trial, data) or disagreement
-        leaves_much = _leaves_much(trial, needed)
-        trial.partial = not untenable and bool(leaves_much)
-        trial.reason = untenable or leaves_much
+        trial.reason = untenable or _leaves_much(trial, needed)
         trial.accepted = not trial.reason
 
 
@@ -143,17 +143,11 @@ def _taken(trial: Trial) -> str:
 def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
     """The best accepted trial, and those whose predictions change alike and are no worse; or none."""
     accepted = sorted((t for t in trials if t.accepted), key=lambda t: -t.lower)
-    return _alike(accepted, current, data) if accepted else []
+    return alike(accepted, current, data) if accepted else []
 
 
-def partial_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
-    """The same of those whose only fault is that they leave too much: another cause may stand beside them."""
-    partial = sorted((t for t in trials if t.partial), key=lambda t: -t.lower)
-    return _alike(partial, current, data) if partial and data.healthy is not None else []
-
-
-def _alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
-    """The best of them, and those whose predictions change alike and are no worse."""
+def alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
+    """The first of them, and those whose predictions change alike and are no worse."""
     best = accepted[0]
     left = Left.by(best.fitted, data).by_window
     members = [best]

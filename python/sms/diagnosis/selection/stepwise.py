@@ -15,7 +15,6 @@ be missed.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -40,8 +39,9 @@ from sms.diagnosis.selection.finite_steps import (
     telling_windows,
 )
 from sms.diagnosis.selection.identifiability import raw_columns
-from sms.diagnosis.selection.judgement import ambiguity_group, judge, partial_group
+from sms.diagnosis.selection.judgement import ambiguity_group, judge
 from sms.diagnosis.selection.outcome import Outcome, Round
+from sms.diagnosis.selection.pairs import try_pairs
 from sms.diagnosis.thresholds import (
     ALIKE,
     CANDIDATE_STEPS,
@@ -158,8 +158,6 @@ def stepwise_selection(
     """
     rounds: list[Round] = []
     current, remaining = baseline, list(effects)
-    waiting: tuple[Fitted, int] | None = None
-    """The model before a cause that leaves too much to stand alone, and that cause's round."""
     original = Left.by(baseline, data).excess("validate")
     for number in range(1, MOST_CAUSES + 1):
         here = Left.by(current, data)
@@ -169,43 +167,24 @@ def stepwise_selection(
             f"round {number}: {len(remaining)} effects", 0.1 + 0.75 * number / (MOST_CAUSES + 1)
         )
         trials = try_effects(current, data, remaining, rng)
-        judge(
-            trials,
-            current,
-            data,
-            original,
-            NEARLY_ALL if small(here, least) else LEAST_SHARE,
-            rng,
-        )
+        needed = NEARLY_ALL if small(here, least) else LEAST_SHARE
+        judge(trials, current, data, original, needed, rng)
         members = ambiguity_group(trials, current, data)
-        if members and waiting is not None:
-            if not _enough_together(waiting[0], members[0], data):
-                members = []
-            waiting = None if members else waiting
-        elif not members and waiting is None:
-            members = partial_group(trials, current, data)
-            waiting = (current, len(rounds)) if members else None
-        rounds.append(Round(trials, members))
-        if not members:
+        together = (
+            [] if members or number > 1 else try_pairs(trials, current, data, original, needed, rng)
+        )
+        rounds += together or [Round(trials, members)]
+        found_now = [r.members for r in together] or ([members] if members else [])
+        if not found_now:
             break
-        members[0].fitted = current = _converged(members[0].fitted, data)
-        remaining = [e for e in remaining if e is not members[0].effect]
-    if waiting is not None:  # it has found no other beside it
-        current = waiting[0]
-        rounds = [r if k < waiting[1] else replace(r, members=[]) for k, r in enumerate(rounds)]
+        current = _converged(found_now[-1][0].fitted, data)
+        for members in found_now:
+            members[0].fitted = current
+        remaining = [e for e in remaining if all(e is not m[0].effect for m in found_now)]
     found = [r.members for r in rounds if r.members]
     while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
         found, current = fewer
     return Outcome(current, rounds, found)
-
-
-def _enough_together(before: Fitted, second: Trial, data: Data) -> bool:
-    """Whether two causes take what each would have to take of what the other leaves."""
-    was, left = Left.by(before, data), Left.by(second.fitted, data)
-    kept = 1.0
-    for role in ROLES:
-        kept *= left.excess(role) / max(was.excess(role), 1e-12)
-    return kept <= (1.0 - LEAST_SHARE) ** 4
 
 
 def _converged(fitted: Fitted, data: Data) -> Fitted:

@@ -1,0 +1,134 @@
+"""Two causes that only together take enough: tried where no effect stands alone.
+
+Of two large causes either may leave so much that it does not stand, or be fitted at the end of what is plausible since
+it makes up for the other. So the effects that promise most are fitted two at a time. A pair is named if each
+takes, of what the other leaves alone, what a cause has to take, and both together as much as two causes in turn would.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+
+from sms.arrays import Array
+from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, logarithms
+from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
+from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.finite_steps import extended
+from sms.diagnosis.selection.judgement import alike, judge
+from sms.diagnosis.selection.outcome import Round
+from sms.diagnosis.thresholds import LEAST_SHARE, PAIR_STEPS, PAIRED, TWINS
+from sms.estimation.least_squares import changed
+
+
+def try_pairs(
+    trials: Sequence[Trial],
+    current: Fitted,
+    data: Data,
+    original: float,
+    needed: float,
+    rng: np.random.Generator,
+) -> list[Round]:
+    """Two rounds, one for each cause of the pair that stands; none if no pair does. Arguments as in `judge`.
+
+    trials: of the round in which no effect stood alone.
+    """
+    tried = _most_promising(trials, current)
+    alone = [_alone(t, current, data) for t in tried]
+    effects = [t.effect for t in tried]
+    both: dict[frozenset[int], Fitted] = {}
+    for i, j in combinations(range(len(tried)), 2):
+        both[frozenset((i, j))] = _together(alone[i], alone[j], data)
+    if not both:
+        return []
+    best, pair = min(both.items(), key=lambda item: _left_of(item[1], data))
+    first, second = sorted(best)
+    if not _enough(current, pair, data):
+        return []
+
+    def rivals(member: int, other: int) -> list[Trial]:
+        """The member on top of the other one alone, and what does nearly the same there."""
+        change = pair.fit.residual - alone[other].fit.residual
+        found = []
+        for k in range(len(tried)):
+            if k == other:
+                continue
+            fitted = both[frozenset((k, other))]
+            if (
+                k == member
+                or _cosine(change, fitted.fit.residual - alone[other].fit.residual) > TWINS
+            ):
+                squared = residual_of(data.validate, fitted.params) ** 2
+                found.append(
+                    Trial(effects[k], fitted, 1.0, squared, identified=fitted.fit.residual**2)
+                )
+        return found
+
+    rounds = []
+    for member, other in ((first, second), (second, first)):
+        candidates = rivals(member, other)
+        judge(candidates, alone[other], data, original, needed, rng, tried=len(both))
+        accepted = [t for t in candidates if t.accepted]
+        if not any(t.effect is effects[member] for t in accepted):
+            return []
+        accepted.sort(key=lambda t: t.effect is not effects[member])
+        rounds.append(Round(candidates, alike(accepted, alone[other], data)))
+    return rounds
+
+
+def _most_promising(trials: Sequence[Trial], current: Fitted) -> list[Trial]:
+    """Those that were fitted and lower most first, then the others by their score tests."""
+    fitted = sorted((t for t in trials if t.fitted is not current), key=lambda t: -t.lower)
+    others = sorted((t for t in trials if t.fitted is current), key=lambda t: t.p_value)
+    return [*fitted, *others][:PAIRED]
+
+
+def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
+    if trial.fitted is not current:
+        return trial.fitted
+    hypothesis = extended(current.hypothesis, trial.effect, data)
+    allowed = data.allowed(data.identify)
+    return fit(hypothesis, data.identify, current.params, PAIR_STEPS, discrepancy=allowed)
+
+
+def _together(one: Fitted, other: Fitted, data: Data) -> Fitted:
+    """Both effects fitted, from the best of what each alone begins with."""
+    effect = other.hypothesis.causes[-1]
+    hypothesis = extended(one.hypothesis, effect, data)
+    mine, its = (list(f.hypothesis.causes[-1].parameters) for f in (one, other))
+    starts = (
+        one.params,
+        other.params,
+        changed(one.params, its, np.array([other.params[n] for n in its])),
+        changed(other.params, mine, np.array([one.params[n] for n in mine])),
+    )
+    runs = data.identify
+    left = [_of_residual(residual_of(runs, start), data) for start in starts]
+    start = starts[int(np.argmin(left))]
+    return fit(hypothesis, runs, start, PAIR_STEPS, discrepancy=data.allowed(runs))
+
+
+def _left_of(fitted: Fitted, data: Data) -> float:
+    return _of_residual(fitted.fit.residual, data)
+
+
+def _of_residual(residual: Array, data: Data) -> float:
+    """What is compared on the identification records: logarithms of what is left, by window and signal."""
+    if not np.all(np.isfinite(residual)):
+        return float("inf")
+    return logarithms(data.identify, beyond_healthy(data, data.identify, residual))
+
+
+def _enough(current: Fitted, pair: Fitted, data: Data) -> bool:
+    """Whether two causes take what each would have to take of what the other leaves."""
+    was, left = Left.by(current, data), Left.by(pair, data)
+    kept = 1.0
+    for role in ROLES:
+        kept *= left.excess(role) / max(was.excess(role), 1e-12)
+    return kept <= (1.0 - LEAST_SHARE) ** 4
+
+
+def _cosine(a: Array, b: Array) -> float:
+    return float(a @ b) / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
