@@ -75,7 +75,8 @@ STEPPED_ON = 3
 TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3
 """Effects that are fitted in a round, by what finite steps and by what linear steps promise. Run time."""
 CANDIDATE_STEPS = 2
-"""Jacobians in the fit of a candidate; that of the one that is chosen goes on. Run time."""
+"""Jacobians in the fit of a candidate, for each parameter that its effect has; that of the one that is chosen goes on.
+Run time."""
 PAIRED = 5
 """Effects of a round that are fitted two at a time where none stands alone: those that promise most. Run time."""
 PAIR_STEPS = 4

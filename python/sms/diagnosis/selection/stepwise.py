@@ -118,9 +118,10 @@ def _fitted(
 ) -> Fitted:
     """The effect fitted beside all else that is free, from the better of its step and its linear estimate."""
     hypothesis = extended(current.hypothesis, effect, data)
+    most_steps = CANDIDATE_STEPS * len(effect.parameters)
     allowed = data.allowed(data.identify)
     if allowed is not None and step.gain > 0.0:
-        return fit(hypothesis, data.identify, step.params, CANDIDATE_STEPS, discrepancy=allowed)
+        return fit(hypothesis, data.identify, step.params, most_steps, discrepancy=allowed)
     name = effect.parameters[0]
     now = current.params[name]
     linear = now + float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
@@ -137,7 +138,7 @@ def _fitted(
     if set(hypothesis.free) - set(slopes) == {name}:
         slopes[name] = raw_columns(current, data.identify, [effect])[:, 0]
     known = slopes if set(hypothesis.free) <= set(slopes) else None
-    return fit(hypothesis, data.identify, start, CANDIDATE_STEPS, known, allowed)
+    return fit(hypothesis, data.identify, start, most_steps, known, allowed)
 
 
 # ---- all rounds ------------------------------------------------------------------------------------
