@@ -14,11 +14,11 @@ from plant_support import write_bench
 from sms import _core
 from sms.diagnosis import diagnose
 from sms.diagnosis.effects.catalogue import Effect, catalogue
-from sms.diagnosis.localisation.unknown_inputs import confirmed, hats
+from sms.diagnosis.localisation.signal_functions import hats
+from sms.diagnosis.localisation.unknown_inputs import confirmed
 from sms.diagnosis.selection.score_test import score_tests
 from sms.estimation.least_squares import Free, fit_windows
 from sms.estimation.nuisance import Nuisance, project
-from sms.io.signals import without_leg
 
 from validation.random_cases import draw
 
@@ -79,8 +79,8 @@ def test_a_zero_error_has_a_size_beyond_which_it_is_none() -> None:
     for kind in ("tank", "bench", "platform"):
         for effect in catalogue(kind):
             if effect.id == "sensor_offset":
-                assert effect.signal is not None
-                largest = of_signal.get(without_leg(effect.signal), 5e4)
+                signal = effect.parameters[0].removeprefix("sensor_offset_").partition(":")[0]
+                largest = of_signal.get(signal, 5e4)
                 assert effect.plausible_range(0.0) == (-largest, largest), effect.key
 
 

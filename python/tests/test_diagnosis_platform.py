@@ -11,7 +11,7 @@ from plant_support import write_platform
 from sms import _core
 from sms.diagnosis import diagnose
 from sms.diagnosis.effects.catalogue import catalogue
-from sms.diagnosis.localisation.unknown_inputs import alike, alike_signals, belong_together
+from sms.diagnosis.localisation.signal_functions import alike, alike_signals, belong_together
 from sms.diagnosis.preparation import make_data
 from sms.io.records import load_record
 from sms.io.rig import load_rig

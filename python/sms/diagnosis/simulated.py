@@ -27,6 +27,7 @@ from sms.diagnosis.adequacy.residual_energy import (
     tolerated,
 )
 from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
+from sms.diagnosis.adequacy.systematic_error import with_systematic_error
 from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
@@ -171,8 +172,10 @@ def investigate(
 def _with_discrepancy(fitted: Fitted, data: Data) -> Fitted:
     """The same model, its values and their errors by generalised least squares."""
     if (allowed := data.allowed(data.identify)) is not None:
-        return fit(fitted.hypothesis, data.identify, fitted.params, discrepancy=allowed)
-    return fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
+        final = fit(fitted.hypothesis, data.identify, fitted.params, discrepancy=allowed)
+    else:
+        final = fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
+    return with_systematic_error(final, data.identify)
 
 
 def complete(

@@ -9,7 +9,7 @@ from sms.diagnosis.adequacy.lack_of_fit import LackOfFit
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.localisation.unknown_inputs import alike
+from sms.diagnosis.localisation.signal_functions import alike
 from sms.diagnosis.result import (
     Cause,
     FedEquations,

@@ -20,12 +20,8 @@ from sms.diagnosis.adequacy.lack_of_fit import lack_of_fit
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.hypothesis import Fitted, nuisance_of, refitted
 from sms.diagnosis.localisation.equation_error import Fed, errors_of
-from sms.diagnosis.localisation.unknown_inputs import (
-    belong_together,
-    leg_of,
-    with_curve,
-    with_terms,
-)
+from sms.diagnosis.localisation.signal_functions import belong_together, leg_of
+from sms.diagnosis.localisation.unknown_inputs import with_curve, with_terms
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.simulated import Case
 from sms.diagnosis.thresholds import AVERAGE, ENDS

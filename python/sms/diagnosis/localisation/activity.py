@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sms import _core
 from sms.arrays import Array
-from sms.diagnosis.localisation.unknown_inputs import at_knots, leg_of, without_leg
+from sms.diagnosis.localisation.signal_functions import at_knots, leg_of, without_leg
 from sms.diagnosis.thresholds import CANNOT, INPUT_RIDGE
 from sms.estimation.discrepancy import KNOTS
 from sms.estimation.windows import Runs

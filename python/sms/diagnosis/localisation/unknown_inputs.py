@@ -11,21 +11,29 @@ noise of the record it was fitted to, and takes nothing of another.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from sms import _core
 from sms.arrays import Array, Index
+from sms.diagnosis.localisation.signal_functions import (
+    alike,
+    alike_signals,
+    belong_together,
+    hats,
+    of_input,
+    points,
+    signals_of,
+    through_plant,
+)
 from sms.diagnosis.result import Hidden, Shape
-from sms.diagnosis.thresholds import CURVE_RIDGE, DRAWS, MOST_ROWS, MOVES, PIECES
+from sms.diagnosis.thresholds import CURVE_RIDGE, DRAWS, MOST_ROWS
 from sms.estimation.block_statistics import sum_by
 from sms.estimation.discrepancy import KNOTS
 from sms.estimation.nuisance import Nuisance
 from sms.estimation.windows import Runs
-from sms.io.signals import LEGS
 
 
 @dataclass(frozen=True)
@@ -38,33 +46,6 @@ class Basis:
     at: Array
     """(pieces,) values of the signal."""
     unit: str
-
-
-def signals_of(runs: Runs) -> dict[str, Array]:
-    """What a hidden term may follow: (rows,) each.
-
-    Not a signal that hardly moves: its readings are noise, and an error of that reading would follow them of itself.
-    """
-    wanted = runs.inputs
-
-    def moves(name: str) -> bool:
-        low, high = np.quantile(wanted[name], [0.05, 0.95])
-        return bool(high - low > MOVES * runs.noise.get(name.partition(" [")[0], 0.0))
-
-    left_out = ("direction", "supply", "setpoint")
-    names = [n for n in wanted if not n.startswith(left_out) and moves(n)]
-    return {n: wanted[n] for n in names}
-
-
-def hats(values: Array, at: Array) -> Array:
-    """(n, pieces): the chain of straight lines that is one at each point of `at` in turn."""
-    at = at + 1e-9 * np.ptp(at) * np.arange(len(at))
-    return np.column_stack([np.interp(values, at, row) for row in np.eye(len(at))])
-
-
-def points(values: Array) -> Array:
-    """Where the pieces meet: even in rank, so that each has data."""
-    return np.asarray(np.quantile(values, np.linspace(0.005, 0.995, PIECES)))
 
 
 def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis]:
@@ -95,7 +76,7 @@ def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis
                 continue
             columns = np.sum(
                 [
-                    _through_plant(runs, _of_input(hidden, number), hats(values, at))
+                    through_plant(runs, of_input(hidden, number), hats(values, at))
                     for number, values in zip(numbers, of_leg, strict=True)
                 ],
                 axis=0,
@@ -118,7 +99,7 @@ def _columns(runs: Runs, hidden: Array, equation: str, functions: Array) -> Arra
     """(rows, pieces): sensitivity of a hidden term that follows functions (rows, pieces) of a signal."""
     equations = list(runs.kind.hidden)
     if equation in equations:
-        return _through_plant(runs, _of_input(hidden, equations.index(equation)), functions)
+        return through_plant(runs, of_input(hidden, equations.index(equation)), functions)
     channel = equation.removeprefix("reading of ")
     here = runs.channel == runs.channels.index(channel)
     return _free_of_start(runs, functions * here[:, None] / runs.noise[channel])
@@ -145,50 +126,6 @@ def with_terms(
     return np.asarray((full - q @ (q.T @ full))[: len(columns)])
 
 
-def _of_input(hidden: Array, number: int) -> Array:
-    return np.asarray(hidden[:, number * KNOTS : (number + 1) * KNOTS])
-
-
-# ---- machines with legs ----------------------------------------------------------------------------------
-
-_LEG = re.compile(r"(?: of leg |_)([123])(?= \[|$)")
-
-
-def leg_of(name: str) -> str:
-    """ "velocity_2 [m/s]", "force of leg 2" -> "2"; empty for what has no leg."""
-    found = _LEG.search(name)
-    return found[1] if found else ""
-
-
-def without_leg(name: str) -> str:
-    """ "velocity_2 [m/s]" -> "velocity [m/s]"."""
-    return _LEG.sub("", name)
-
-
-def belong_together(equation: str, signal: str) -> bool:
-    """Whether a term of this equation may follow this signal: another leg's it does not."""
-    return not leg_of(signal) or leg_of(equation) == leg_of(signal)
-
-
-def alike(equations: Sequence[str]) -> dict[str, list[int]]:
-    """Equations that every leg has, as one for all legs: "force" -> where those of legs 1, 2, 3 stand."""
-    found: dict[str, list[int]] = {}
-    for number, equation in enumerate(equations):
-        if leg_of(equation):
-            found.setdefault(without_leg(equation), []).append(number)
-    return found
-
-
-def alike_signals(signals: Mapping[str, Array]) -> dict[str, list[Array]]:
-    """ "velocity [m/s]" -> that of each leg; what has no leg is the same for all."""
-    found: dict[str, list[Array]] = {}
-    for name, values in signals.items():
-        found.setdefault(without_leg(name), []).extend(
-            [values] * (1 if leg_of(name) else len(LEGS))
-        )
-    return found
-
-
 def thinned(runs: Runs, columns: Array) -> Array:
     """(rows + known, m) with sums of neighbouring samples in place of them, scaled so that noise stays what it is."""
     every = thinning(runs)
@@ -210,29 +147,6 @@ def thinning(runs: Runs) -> int:
 
 
 # ---- sensitivities ------------------------------------------------------------------------------------------
-
-
-def _through_plant(runs: Runs, hidden: Array, functions: Array) -> Array:
-    """Footprint of a hidden input that follows functions (rows, pieces) of a signal."""
-    out = np.zeros((len(hidden), functions.shape[1]))
-    for w, values in zip(runs.problem.windows, at_knots(runs, functions), strict=True):
-        rows = slice(w.row, w.row + w.rows)
-        out[rows] = hidden[rows] @ values
-    return out
-
-
-def at_knots(runs: Runs, functions: Array) -> Array:
-    """(windows, KNOTS, pieces): functions (rows, pieces) of a signal at the points of time of each window."""
-    channels, out = len(runs.channels), []
-    for w in runs.problem.windows:
-        of_samples = functions[w.row : w.row + w.rows][::channels]
-        place = np.linspace(0, w.samples - 1, KNOTS)
-        # The mean around a knot, so that a term that jumps at a reversal is not caught by one sample.
-        half = max(1, round(0.5 * (w.samples - 1) / (KNOTS - 1)))
-        out.append(
-            [of_samples[max(0, round(p) - half) : round(p) + half + 1].mean(axis=0) for p in place]
-        )
-    return np.array(out)
 
 
 def _free_of_start(runs: Runs, columns: Array) -> Array:

@@ -1,0 +1,153 @@
+"""Standard errors where what a model leaves follows its signals.
+
+A random input of each equation (estimation/discrepancy.py) averages out over a record. An error of a friction law or
+of a flow does not: it is the same wherever the signals are, and an estimate is off by what of it the parameter can
+imitate. So each equation may also have an unknown function of each signal (localisation/signal_functions.py): a normal
+process along it that bends over half the signal's range, with the standard deviation under which the residual is most
+likely (fixed point of MacKay, 1992). To first order that gives the estimates with these functions beside the
+parameters: a covariance, and how far the estimates would move. The stated variance is the sum of that covariance and of
+the square of the move.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sms.arrays import Array, Index
+from sms.diagnosis.hypothesis import Fitted, nuisance_of
+from sms.diagnosis.localisation.signal_functions import (
+    alike,
+    alike_signals,
+    hats,
+    of_input,
+    points,
+    signals_of,
+    through_plant,
+)
+from sms.diagnosis.localisation.unknown_inputs import thinned
+from sms.estimation.windows import Runs
+
+BENDS = 0.5
+"""Of a signal's range: the length along it over which an error of a law changes. Judgement: laws of friction and flow
+are smooth, and what is off in them too."""
+ITERATIONS = 40
+"""Of the fixed point of the standard deviations. Run time: it settles within some percent."""
+LEAST = 1e-3
+"""Standard deviations of the noise: a function that moves readings by less is nothing. Numerics."""
+
+
+def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
+    """The same estimates; their covariance (free, free) with what systematic errors of the equations could imitate.
+
+    Unchanged for a model that was not fitted with a discrepancy. Never smaller than it was.
+    """
+    if fitted.discrepancy is None or not fitted.movable:
+        return fitted
+    functions = _functions(fitted, runs)
+    nuisance = nuisance_of(fitted, white=True)
+    stacked = np.vstack([nuisance.jacobian, nuisance.pull])
+    scale = np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
+    jacobian = thinned(runs, stacked / scale)
+    residual = np.concatenate([fitted.whiten(fitted.fit.residual), nuisance.departure])
+    systematic = Systematic.of(
+        jacobian,
+        thinned(runs, nuisance.with_declared(fitted.whiten(functions.columns))),
+        thinned(runs, residual[:, None])[:, 0],
+        functions.group,
+        fitted.hypothesis.inflation,
+    )
+    free = list(fitted.hypothesis.free)
+    place = [free.index(n) for n in fitted.movable]
+    covariance = fitted.covariance.copy()
+    before = np.sqrt(np.maximum(np.diag(covariance)[place], 0.0))
+    after = np.sqrt(np.diag(systematic.covariance) + systematic.move**2) / scale
+    grown = np.ones(len(free))
+    grown[place] = np.where(before > 0.0, np.maximum(after / np.maximum(before, 1e-300), 1.0), 1.0)
+    return replace(fitted, covariance=covariance * np.outer(grown, grown))
+
+
+@dataclass(frozen=True)
+class Functions:
+    """Sensitivities (rows, functions) to unknown functions of signals in the equations."""
+
+    columns: Array
+    group: Index
+    """(functions,): to which pair of an equation and a signal each belongs."""
+
+
+def _functions(fitted: Fitted, runs: Runs) -> Functions:
+    """Every equation with every signal; equations that every leg has are one, with the signals of each."""
+    assert fitted.discrepancy is not None
+    hidden, signals = fitted.discrepancy.inputs, signals_of(runs)
+    by_leg = alike(tuple(runs.kind.hidden))
+    single = {
+        e: [k] for k, e in enumerate(runs.kind.hidden) if all(k not in n for n in by_leg.values())
+    }
+    parts = []
+    for numbers in (single | by_leg).values():
+        of_equation = (
+            alike_signals(signals) if len(numbers) > 1 else {s: [v] for s, v in signals.items()}
+        )
+        for values in of_equation.values():
+            at = points(np.concatenate(values))
+            if np.ptp(at) > 0.0:
+                each = zip(numbers, values, strict=True)
+                parts.append(
+                    np.sum(
+                        [through_plant(runs, of_input(hidden, k), process(v, at)) for k, v in each],
+                        axis=0,
+                    )
+                )
+    group = np.repeat(np.arange(len(parts)), [p.shape[1] for p in parts])
+    return Functions(np.hstack(parts), group)
+
+
+def process(values: Array, at: Array) -> Array:
+    """(n, pieces): functions of a signal (n,) that, each times an independent normal number, add up to the process."""
+    place = at / np.ptp(at)
+    covariance = np.exp(-0.5 * ((place[:, None] - place) / BENDS) ** 2)
+    root = np.linalg.cholesky(covariance + 1e-6 * np.eye(len(at)))
+    return np.asarray(hats(values, at) @ root)
+
+
+@dataclass(frozen=True)
+class Systematic:
+    """Parameters and functions estimated together, to first order."""
+
+    covariance: Array
+    """(parameters, parameters)"""
+    move: Array
+    """(parameters,): by which the estimates move."""
+    size: Array
+    """(groups,): by how much the functions of a group change a residual, root mean square in units of the noise."""
+
+    @classmethod
+    def of(
+        cls, jacobian: Array, functions: Array, residual: Array, group: Index, inflation: float
+    ) -> Systematic:
+        """jacobian (rows, parameters), functions (rows, functions), residual (rows,), with what is declared as rows."""
+        noise = inflation * float(np.mean(residual**2))
+        basis, _ = np.linalg.qr(jacobian)
+        off = functions - basis @ (basis.T @ functions)
+        products, score = off.T @ off / noise, off.T @ residual / noise
+        groups = int(group.max()) + 1
+        moved = np.sqrt(np.bincount(group, np.diag(products)) / np.bincount(group))
+        unit = 1.0 / np.maximum(moved, 1e-300)
+        sigma = unit * float(np.linalg.norm(residual)) / np.sqrt(noise * len(group))
+        for _ in range(ITERATIONS):
+            d = sigma[group]
+            spread = np.linalg.inv(np.eye(len(d)) + d[:, None] * products * d)
+            mean = spread @ (d * score)
+            told = np.bincount(group, 1.0 - np.diag(spread), groups)
+            squares = np.bincount(group, mean**2, groups)
+            sigma = np.maximum(sigma * np.sqrt(squares / np.maximum(told, 1e-12)), LEAST * unit)
+        d = sigma[group]
+        together = np.hstack([jacobian, functions * d])
+        information = together.T @ together
+        information[len(basis.T) :, len(basis.T) :] += noise * np.eye(len(d))
+        inverse = np.linalg.pinv(information, rcond=1e-12, hermitian=True)
+        count = jacobian.shape[1]
+        move = -(inverse @ (together.T @ residual))[:count]
+        return cls(noise * inverse[:count, :count], move, sigma * moved / np.sqrt(len(residual)))

@@ -1,0 +1,49 @@
+"""Standard errors where the model leaves a function of a signal beside noise."""
+
+from __future__ import annotations
+
+import numpy as np
+from sms.diagnosis.adequacy.systematic_error import Systematic, process
+from sms.diagnosis.localisation.signal_functions import points
+
+from validation.random_cases import draw
+
+ROWS, TRIALS, NOISE = 600, 60, 1.0
+
+
+def test_the_stated_interval_holds_where_a_law_is_off_along_its_signal() -> None:
+    """A slope over the velocity is estimated, and the law has waves along it that the model has not."""
+    rng = draw("systematic error")
+    within = plain = 0
+    for _ in range(TRIALS):
+        velocity = np.cumsum(rng.normal(size=ROWS))
+        velocity /= np.abs(velocity).max()
+        jacobian = velocity[:, None] / np.linalg.norm(velocity)
+        functions = process(velocity, points(velocity))
+        waves = np.sin(rng.uniform(1.5, 6.0) * velocity + rng.uniform(-np.pi, np.pi))
+        left = rng.normal(0.0, 3.0) * waves + rng.normal(0.0, NOISE, ROWS)
+        bias = float(jacobian[:, 0] @ left)  # of the least-squares estimate, whose truth is zero
+        residual = left - jacobian[:, 0] * bias
+        found = Systematic.of(
+            jacobian, functions, residual, np.zeros(functions.shape[1], dtype=np.int64), 1.0
+        )
+        within += abs(bias) < 1.96 * np.sqrt(found.covariance[0, 0] + found.move[0] ** 2)
+        plain += abs(bias) < 1.96 * NOISE
+    assert within >= 0.85 * TRIALS
+    assert plain < 0.5 * TRIALS
+
+
+def test_nothing_is_added_where_noise_alone_is_left() -> None:
+    rng = draw("no systematic error")
+    grown = []
+    for _ in range(TRIALS):
+        signal, other = rng.uniform(-1.0, 1.0, (2, ROWS))
+        jacobian = other[:, None] / np.linalg.norm(other)
+        functions = process(signal, points(signal))
+        residual = rng.normal(0.0, NOISE, ROWS)
+        residual -= jacobian[:, 0] * float(jacobian[:, 0] @ residual)
+        found = Systematic.of(
+            jacobian, functions, residual, np.zeros(functions.shape[1], dtype=np.int64), 1.0
+        )
+        grown.append(np.sqrt(found.covariance[0, 0] + found.move[0] ** 2) / NOISE)
+    assert np.median(grown) < 1.1
