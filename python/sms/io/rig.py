@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Literal
 
 from sms import _core
+from sms.io.data_files import beside, find_files
 from sms.io.errors import InputError, did_you_mean, nearest
 from sms.io.schema import (
     ControlTable,
@@ -21,7 +22,6 @@ from sms.io.schema import (
     ModelTable,
     ParameterTable,
     RecordTable,
-    RelatedTable,
     RigFile,
     SignalTable,
     parse_rig_text,
@@ -106,6 +106,7 @@ class Rig:
     related: tuple[RelatedRig, ...] = ()
     model: ModelTable = field(default_factory=ModelTable)
     control: ControlTable = field(default_factory=ControlTable)
+    effects: Path | None = None  #: a file with effects beside those of the catalogue
 
     def declared(self, name: str) -> Declaration:
         """What is known of a parameter: from the file, else the default and its uncertainty."""
@@ -156,7 +157,9 @@ def interpret(file: RigFile, path: Path) -> Rig:
         title=file.rig.title or path.stem,
         notes=file.rig.notes,
         layout=DataLayout(
-            data.delimiter, tuple(data.columns) if data.columns else None, _dbc(data, path)
+            data.delimiter,
+            tuple(data.columns) if data.columns else None,
+            None if data.dbc is None else beside(path, data.dbc, "[data] dbc", "DBC file"),
         ),
         skip_first=data.skip_first,
         speed_above=speed_above,
@@ -167,36 +170,18 @@ def interpret(file: RigFile, path: Path) -> Rig:
         },
         records=_records(file.records, data, path),
         related=tuple(
-            RelatedRig(_related_file(table, number, path), table.differs)
+            RelatedRig(
+                beside(path, table.file, place("related", number, "file"), "rig file"),
+                table.differs,
+            )
             for number, table in enumerate(file.related)
         ),
         model=file.model,
         control=file.control,
+        effects=None
+        if file.effects is None
+        else beside(path, file.effects.file, "[effects] file", "file of effects"),
     )
-
-
-def _related_file(table: RelatedTable, number: int, path: Path) -> Path:
-    """The rig file of a relative, beside this one."""
-    file = (path.parent / Path(table.file).expanduser()).resolve()
-    if not file.is_file():
-        near = nearest(file.name, (f.name for f in path.parent.glob("*.toml")))
-        remedy = f"did you mean '{near}'?" if near else "name a rig file beside this one"
-        raise InputError(
-            f"{path}, {place('related', number, 'file')}: there is no rig file {file}; {remedy}"
-        )
-    return file
-
-
-def _dbc(data: DataTable, path: Path) -> Path | None:
-    """The file that [data] dbc names, beside the rig file."""
-    if data.dbc is None:
-        return None
-    file = (path.parent / Path(data.dbc).expanduser()).resolve()
-    if not file.is_file():
-        near = nearest(file.name, (f.name for f in path.parent.glob("*.dbc")))
-        remedy = f"did you mean '{near}'?" if near else "name a DBC file beside the rig file"
-        raise InputError(f"{path}, {place('data', 'dbc')}: there is no file {file}; {remedy}")
-    return file
 
 
 def _signals(file: RigFile, path: Path) -> dict[str, SignalSource]:
@@ -338,59 +323,3 @@ def _conditions(table: RecordTable, where: str) -> dict[str, float]:
 def _repeated(words: list[str]) -> str | None:
     """The first word that occurs more than once."""
     return next((word for word, count in Counter(words).items() if count > 1), None)
-
-
-def find_files(names: list[str], data: DataTable, path: Path) -> list[Path]:
-    """The record files, all under one place: $SMS_DATA, beside the rig file, ../shared/data.
-
-    The first place that has every file is taken. InputError lists the places looked at.
-    """
-    folder = Path(data.folder or "").expanduser()
-    places = [place_ / folder for place_ in search_places(path)] if not folder.is_absolute() else []
-    for where in places or [folder]:
-        if (files := files_in(where, names)) is not None:
-            return files
-    raise InputError(_nowhere(names, places or [folder], data, path))
-
-
-def files_in(folder: Path, names: list[str]) -> list[Path] | None:
-    """The named files in one folder, or None when one is missing."""
-    files = [_on_disk(folder / Path(name).expanduser()) for name in names]
-    found = [file for file in files if file is not None]
-    return found if len(found) == len(names) else None
-
-
-def _on_disk(file: Path) -> Path | None:
-    """The file, or the same one packed or unpacked ("run.csv.gz" for "run.csv" and back)."""
-    file = file.resolve()
-    twin = file.with_suffix("") if file.suffix == ".gz" else file.with_name(file.name + ".gz")
-    return next((candidate for candidate in (file, twin) if candidate.is_file()), None)
-
-
-def search_places(path: Path) -> list[Path]:
-    """Where a relative data path of the rig file `path` is looked up, in this order."""
-    named = os.environ.get("SMS_DATA")
-    places = [Path(named).expanduser()] if named else []
-    return [*places, path.parent, Path("../shared/data")]
-
-
-def _nowhere(names: list[str], places: list[Path], data: DataTable, path: Path) -> str:
-    """The sentence for records that are not on disk: which, the places looked at, the remedy."""
-
-    def missing_in(folder: Path) -> list[str]:
-        return [name for name in names if _on_disk(folder / name) is None]
-
-    best = min(places, key=lambda folder: len(missing_in(folder)))
-    missing = missing_in(best)
-    if len(missing) < len(names) or (data.folder and best.is_dir()):
-        near = nearest(missing[0], (file.name for file in best.iterdir()))
-        hint = f"did you mean '{near}'?" if near else "check the name, or put the file there"
-        where = place("records", names.index(missing[0]), "file")
-        return f"{path}, {where}: there is no file '{missing[0]}' in {best.resolve()}; {hint}"
-    what = f"the data folder '{data.folder}'" if data.folder else f"the record '{missing[0]}'"
-    looked = ", ".join(str(folder.resolve()) for folder in places)
-    obtain = f"it can be had from {data.obtain}" if data.obtain else "put it into one of these"
-    return (
-        f"{path}: {what} is nowhere (looked in: {looked}); {obtain}, "
-        "or set SMS_DATA to the folder that holds it"
-    )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, ValidationError
 
@@ -122,6 +122,12 @@ class RelatedTable(Table):
     differs: str
 
 
+class EffectsTable(Table):
+    """[effects]: a file with effects of one's own, beside those of the catalogue."""
+
+    file: str
+
+
 class RigFile(Table):
     """The whole rig file."""
 
@@ -135,18 +141,12 @@ class RigFile(Table):
     )
     records: list[RecordTable] = Field(min_length=1)
     related: list[RelatedTable] = Field(default_factory=list)
+    effects: EffectsTable | None = None
 
 
-_MODELS: Mapping[str, type[Table]] = {
-    "rig": RigTable,
-    "model": ModelTable,
-    "control": ControlTable,
-    "data": DataTable,
-    "signals": SignalTable,
-    "parameters": ParameterTable,
-    "records": RecordTable,
-    "related": RelatedTable,
-}
+Model = TypeVar("Model", bound=Table)
+_LISTS = ("records", "related", "effect")
+"""Tables of which there can be several, [[records]]."""
 _EXPECTED = {
     "string_type": "must be text in quotes",
     "bool_type": "must be true or false",
@@ -162,59 +162,74 @@ _EXPECTED = {
 
 def read_rig_text(path: Path) -> str:
     """The text of the rig file; InputError when it is missing, empty or not text."""
+    return read_text(path, "rig file", "[rig] and [[records]]")
+
+
+def read_text(path: Path, what: str, least: str) -> str:
+    """The text of a TOML file; InputError when it is missing, empty or not text. least: the tables that it needs."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
-        raise InputError(f"{path}: there is no such rig file; check the path") from None
+        raise InputError(f"{path}: there is no such {what}; check the path") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file in UTF-8; a rig file is TOML text") from None
+        raise InputError(f"{path}: not a text file in UTF-8; a {what} is TOML text") from None
     except OSError as problem:
         raise InputError(f"{path}: cannot be read ({problem.strerror})") from None
     if not text.strip():
-        raise InputError(f"{path}: the rig file is empty; it needs [rig] and [[records]] at least")
+        raise InputError(f"{path}: the {what} is empty; it needs {least} at least")
     return text
 
 
 def parse_rig_text(text: str, path: Path) -> RigFile:
     """Check the structure of a rig file's text; `path` is what an InputError names."""
+    return checked(RigFile, parse_toml(text, path), path)
+
+
+def parse_toml(text: str, path: Path) -> dict[str, Any]:
+    """The tables of a TOML text; InputError where it is none."""
     try:
-        tables = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
         raise InputError(f"{path}: not valid TOML: {problem}; correct it there") from None
+
+
+def checked(model: type[Model], tables: Mapping[str, Any], path: Path) -> Model:
+    """The tables of a file in the structure of `model`; InputError names file, table and key."""
     try:
-        return RigFile.model_validate(tables)
+        return model.model_validate(tables)
     except ValidationError as problem:
         errors: list[dict[str, Any]] = [dict(error) for error in problem.errors()]
     # A misspelt key also makes its right spelling missing: the misspelling alone is what to say.
     misspelt = [error["loc"][:-1] for error in errors if error["type"] == "extra_forbidden"]
     errors = [e for e in errors if e["type"] != "missing" or e["loc"][:-1] not in misspelt]
     more = f" (and {len(errors) - 1} more in this file)" if len(errors) > 1 else ""
-    raise InputError(f"{path}, {_sentence(errors[0], tables)}{more}")
+    raise InputError(f"{path}, {_sentence(model, errors[0], tables)}{more}")
 
 
 def place(*location: str | int) -> str:
     """How a place in a rig file is named: "[data] skip_first", "[[records]] number 2, role"."""
     table, *keys = location
-    if table != "records":
+    if table not in _LISTS:
         return " ".join([f"[{table}]", ".".join(str(key) for key in keys)]).strip()
-    name = f"[[records]] number {int(keys[0]) + 1}" if keys else "[[records]]"
+    name = f"[[{table}]] number {int(keys[0]) + 1}" if keys else f"[[{table}]]"
     return ", ".join([name, *(str(key) for key in keys[1:])])
 
 
-def _sentence(error: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
+def _sentence(model: type[Table], error: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
     """One pydantic error as place, what is wrong, remedy."""
     *parents, key = error["loc"]
     kind = error["type"]
     if kind == "extra_forbidden":
-        return _unknown_key(parents, str(key))
+        return _unknown_key(model, parents, str(key))
     if kind == "missing":
         return _missing_key(parents, str(key))
     where = place(*error["loc"])
-    if error["loc"] == ("records",) and isinstance(tables.get("records"), Mapping):
-        return "[records]: there can be several records; write [[records]] with double brackets"
+    if len(error["loc"]) == 1 and key in _LISTS and isinstance(tables.get(str(key)), Mapping):
+        return f"[{key}]: there can be several; write [[{key}]] with double brackets"
     if kind == "literal_error":
         given = str(error["input"])
-        return f"{where}: '{given}' is not known; {did_you_mean(given, _words(parents, str(key)))}"
+        words = _words(_tables_of(model)[str(parents[0])], str(key))
+        return f"{where}: '{given}' is not known; {did_you_mean(given, words)}"
     problem = error["ctx"]["error"] if kind == "value_error" else _EXPECTED.get(kind, error["msg"])
     return f"{where}: {problem}"
 
@@ -222,24 +237,37 @@ def _sentence(error: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
 def _missing_key(parents: list[str | int], key: str) -> str:
     if parents:
         return f"{place(*parents)}: the key '{key}' is missing; add it"
-    return f"the table {'[[records]]' if key == 'records' else f'[{key}]'} is missing; add it"
+    return f"the table {f'[[{key}]]' if key in _LISTS else f'[{key}]'} is missing; add it"
 
 
-def _unknown_key(parents: list[str | int], key: str) -> str:
-    model = _MODELS[str(parents[0])] if parents else RigFile
-    known = list(model.model_fields)
+def _unknown_key(model: type[Table], parents: list[str | int], key: str) -> str:
+    tables = _tables_of(model)
+    known = list((tables[str(parents[0])] if parents else model).model_fields)
     if not parents:
         return f"the table [{key}] is not known; {did_you_mean(key, known)}"
     where = place(*parents)
-    homes = [table for table, other in _MODELS.items() if key in other.model_fields]
+    homes = [table for table, other in tables.items() if key in other.model_fields]
     if homes and nearest(key, known) is None:
         return f"{where}: the key '{key}' does not belong here; move it to [{homes[0]}]"
     return f"{where}: the key '{key}' is not known; {did_you_mean(key, known)}"
 
 
-def _words(parents: list[str | int], key: str) -> list[str]:
+def _tables_of(model: type[Table]) -> dict[str, type[Table]]:
+    """Name of a table of a file -> its keys."""
+    found = {name: _table_in(field.annotation) for name, field in model.model_fields.items()}
+    return {name: table for name, table in found.items() if table is not None}
+
+
+def _table_in(annotation: Any) -> type[Table] | None:
+    """The table in `list[RecordTable]` or `dict[str, Annotated[SignalTable, ...]] | None`."""
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return annotation
+    return next(filter(None, map(_table_in, get_args(annotation))), None)
+
+
+def _words(table: type[Table], key: str) -> list[str]:
     """The words allowed for a key that takes one of a few."""
-    annotation: Any = _MODELS[str(parents[0])].model_fields[key].annotation
+    annotation: Any = table.model_fields[key].annotation
     if (
         type(None) in annotation.__args__
     ):  # of a key that may be left out, the other half of its type

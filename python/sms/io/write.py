@@ -16,8 +16,9 @@ import tomlkit
 from numpy.typing import ArrayLike
 from tomlkit.items import InlineTable
 
+from sms.io.data_files import files_in
 from sms.io.errors import InputError, did_you_mean
-from sms.io.rig import Declaration, check_bounds, files_in, interpret
+from sms.io.rig import Declaration, check_bounds, interpret
 from sms.io.schema import parse_rig_text, read_rig_text
 from sms.io.signals import column_name
 from sms.io.units import from_si, interval_from_si, split_quantity
@@ -109,8 +110,7 @@ def write_extended_rig(
             )
         _set_parameter(table, rig.table[name], declaration, where)
     _keep_data_reachable(document, original_path, out_path)
-    _keep_related_reachable(document, original_path, out_path)
-    _keep_dbc_reachable(document, original_path, out_path)
+    _keep_neighbours_reachable(document, original_path, out_path)
     header = "".join(f"# {line}".rstrip() + "\n" for line in header_comment.splitlines())
     extended = f"{header}\n{tomlkit.dumps(document)}"
     again = interpret(parse_rig_text(extended, out_path), out_path)
@@ -186,19 +186,12 @@ def _keep_data_reachable(document: Any, original_path: Path, out_path: Path) -> 
     document["data"]["folder"] = from_new_place
 
 
-def _keep_related_reachable(document: Any, original_path: Path, out_path: Path) -> None:
-    """Point each [[related]] file from the new place to the rig file beside the original."""
-    for entry in document.get("related", []):
-        file = Path(_plain(entry["file"])).expanduser()
-        if not file.is_absolute():
-            entry["file"] = _from_new_place(file, original_path, out_path)
-
-
-def _keep_dbc_reachable(document: Any, original_path: Path, out_path: Path) -> None:
-    """Point [data] dbc from the new place to the file beside the original."""
-    file = Path(_plain(document.get("data", {}).get("dbc", "/"))).expanduser()
-    if not file.is_absolute():
-        document["data"]["dbc"] = _from_new_place(file, original_path, out_path)
+def _keep_neighbours_reachable(document: Any, original_path: Path, out_path: Path) -> None:
+    """Point what names a file beside the original to it from the new place: related rigs, a DBC, effects."""
+    tables = [document.get("data", {}), document.get("effects", {}), *document.get("related", [])]
+    for table, key in zip(tables, ["dbc"] + ["file"] * (len(tables) - 1), strict=True):
+        if key in table and not (file := Path(_plain(table[key])).expanduser()).is_absolute():
+            table[key] = _from_new_place(file, original_path, out_path)
 
 
 def _from_new_place(file: Path, original_path: Path, out_path: Path) -> str:
