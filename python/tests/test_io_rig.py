@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 from io_support import PARAMETERS, PLAIN_RIG, RECORDS, write_rig
 from sms.io import Declaration, InputError, SignalSource, load_rig
+from sms.io.schema import RigFile, keys_of
 from sms.parameters import PARAMETERS as TABLE
 
 SIGNALS = """
@@ -244,3 +246,16 @@ def test_the_hold_of_a_command_is_one_of_two_words_and_of_a_command_only(tmp_pat
     assert failure(write_rig(tmp_path, wrong)).endswith("known are: previous, linear")
     other = WITH_SIGNALS.replace("scale = -1", 'scale = -1, hold = "linear"')
     assert "only a valve command can have a hold" in failure(write_rig(tmp_path, other))
+
+
+def test_every_key_is_on_the_page_of_the_rig_file() -> None:
+    """In the row of its table; what the rows of a table hold is a key of it."""
+    page = (Path(__file__).parents[2] / "docs" / "rig_file.md").read_text(encoding="utf-8")
+    said: dict[str, set[str]] = {}
+    table = ""
+    for line in page.splitlines():
+        cells = line.split("|")[1:3]
+        if line.startswith("|") and "`" in cells[1]:
+            table = cells[0].strip(" `[]") or table
+            said.setdefault(table, set()).update(re.findall(r"`(\w+)`", cells[1]))
+    assert said == {name: set(keys) for name, keys in keys_of(RigFile).items()}

@@ -57,6 +57,7 @@ def diagnose(
         raise InputError(
             f"{rig.path}: a cylinder's force balance carries no empirical term; leave --empirical out"
         )
+    effects = effects_of(rig)
     records, findings = read_and_check(rig)
     blank = blank_answer(rig, records, findings, seed)
     faults = [f for f in findings if f.severity == "error"]
@@ -68,7 +69,6 @@ def diagnose(
 
     progress("fitting the baseline", 0.1)
     data = make_data(rig, records)
-    effects = effects_of(rig)
     baseline = fit(baseline_hypothesis(data, effects), data.identify)
     able, blind = identifiable(baseline, data, effects)
     before = repeats_of(baseline, data, rng)

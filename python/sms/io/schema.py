@@ -252,6 +252,11 @@ def _unknown_key(model: type[Table], parents: list[str | int], key: str) -> str:
     return f"{where}: the key '{key}' is not known; {did_you_mean(key, known)}"
 
 
+def keys_of(model: type[Table]) -> dict[str, list[str]]:
+    """Name of a table of a file -> the names of its keys."""
+    return {name: list(table.model_fields) for name, table in _tables_of(model).items()}
+
+
 def _tables_of(model: type[Table]) -> dict[str, type[Table]]:
     """Name of a table of a file -> its keys."""
     found = {name: _table_in(field.annotation) for name, field in model.model_fields.items()}

@@ -1,7 +1,7 @@
 """The effects that can be named: one hypothesis for each effect and each signal or part that it can sit on.
 
 cylinder.toml is that of a cylinder's force balance, pneumatic.toml that of tank, bench and platform,
-platform.toml what the platform has beyond it.
+platform.toml what the platform has beyond it. A rig file may name a file with entries of its user's own.
 """
 
 from __future__ import annotations
@@ -13,6 +13,13 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Literal
 
+from sms.diagnosis.effects.own_entries import (
+    Known,
+    filled,
+    own_entries,
+    parameters_of,
+    places_of,
+)
 from sms.io.rig import Rig
 from sms.io.signals import LEGS, SIGNALS, label, without_leg
 from sms.parameters import PARAMETERS, common_parameter, is_of_leg
@@ -75,22 +82,19 @@ class Effect:
 
 def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
     of_sensor = "signals" in entry
-    for place in entry.get("signals", entry.get("parts", [None])):
-        said = _said(place)
+    for place in places_of(entry):
         title, cause, signature, separated_by = (
-            entry[key].format(signal=said, part=said)
+            filled(entry[key], _said(place))
             for key in ("title", "cause", "signature", "separated_by")
         )
         yield Effect(
             id=entry["id"],
             signal=place,
             kind=entry["kind"],
-            parameters=tuple(
-                _of_leg(p.format(signal=place, part=place)) for p in entry["parameters"]
-            ),
+            parameters=parameters_of(entry, place),
             block=entry["block"],
             title=title,
-            cause=f"{cause} In the records: {signature}.",
+            cause=f"{cause} In the records: {signature}." if signature else cause,
             separated_by=separated_by,
             needs=tuple(entry["needs"]),
             plausible=_plausible(entry["plausible"], place),
@@ -115,16 +119,6 @@ def _said(place: str | None) -> str | None:
     if place is not None and without_leg(place) in SIGNALS:
         return label(place)
     return PARTS_IN_WORDS.get(place or "", place)
-
-
-def _of_leg(parameter: str) -> str:
-    """The parameter of a leg's sensor: "sensor_gain_extension_2" -> "sensor_gain_extension:2"."""
-    common = without_leg(parameter)
-    return (
-        parameter
-        if parameter in PARAMETERS
-        else common + parameter[len(common) :].replace("_", ":")
-    )
 
 
 def _in_one_leg(effects: Sequence[Effect], ids: Sequence[str]) -> Iterable[Effect]:
@@ -161,12 +155,32 @@ def _read(name: str) -> dict[str, Any]:
     return tomllib.loads(files("sms.diagnosis.effects").joinpath(name).read_text(encoding="utf-8"))
 
 
+@cache
+def _known(kind: str) -> Known:
+    """What the catalogue has for a kind of rig, that nobody defines it a second time."""
+    effects = catalogue(kind)
+    every = [
+        e["block"] for name in ("cylinder.toml", "pneumatic.toml") for e in _read(name)["effect"]
+    ]
+    blocks = [*every, *(e["block"] for e in _read("platform.toml")["effect"])]
+    return Known(
+        {e.id for e in effects}, {e.parameters: e.key for e in effects}, list(dict.fromkeys(blocks))
+    )
+
+
+def own_effects(rig: Rig) -> tuple[Effect, ...]:
+    """The hypotheses of the file that [effects] of the rig file names. InputError for a mistake in it."""
+    entries, legs = own_entries(rig, _known(rig.kind))
+    effects = tuple(e for entry in entries for e in _effects(entry))
+    return effects + tuple(_in_one_leg(effects, legs))
+
+
 def effects_of(rig: Rig) -> tuple[Effect, ...]:
-    """The hypotheses that stand for a simulated rig with its laws."""
+    """The hypotheses that stand for a simulated rig with its laws: those of the catalogue, and its user's own."""
     control = rig.control
     controller = control.law if control.controller == "simulated" else "recorded"
     return tuple(
         e
-        for e in catalogue(rig.kind)
+        for e in (*catalogue(rig.kind), *own_effects(rig))
         if e.chambers in (None, rig.model.chambers) and e.controller in (None, controller)
     )
