@@ -43,6 +43,9 @@ def _read_table() -> Mapping[str, Parameter]:
 PARAMETERS: Mapping[str, Parameter] = _read_table()
 """Every parameter of the model by its name, in the order of params.def."""
 
+FLOW_MAP = tuple(name for name in PARAMETERS if name.startswith("flow_map_"))
+"""Relative errors of the flow through the valve, at some openings."""
+
 
 # ---- machines with three legs ----------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ from sms.diagnosis.localisation.unknown_inputs import confirmed
 from sms.diagnosis.selection.score_test import score_tests
 from sms.estimation.least_squares import Free, fit_windows
 from sms.estimation.nuisance import Nuisance, project
+from sms.parameters import FLOW_MAP
 
 from validation.random_cases import draw
 
@@ -199,6 +200,22 @@ def test_a_healthy_bench_gives_no_evidence(tmp_path: Path) -> None:
     answer = diagnose(write_bench(tmp_path, 1, {}))
     assert (answer.verdict, answer.causes) == ("no-evidence", ())
     assert all(g.baseline_rms < 1.3 * g.noise_floor for g in answer.gain)
+
+
+def test_a_flow_map_may_be_off_as_far_as_the_rig_file_says(tmp_path: Path) -> None:
+    path = write_bench(
+        tmp_path, 5, {n: 0.12 * np.sin(1.3 * k + 1.0) for k, n in enumerate(FLOW_MAP)}
+    )
+    text = path.read_text()
+    path.write_text(text + '\n[model]\nflow_map_uncertainty = "0 %"\n')
+    exact = diagnose(path)
+    assert exact.verdict != "no-evidence"
+    assert not set(FLOW_MAP) & {p.name for p in exact.baseline}
+    path.write_text(text + '\n[model]\nflow_map_uncertainty = "12 %"\n')
+    wide = diagnose(path)
+    assert wide.verdict == "no-evidence"
+    assert {p.name for p in wide.baseline} >= set(FLOW_MAP[:5])  # a wider opening does not occur
+    assert all(g.baseline_rms < 1.3 * g.noise_floor for g in wide.gain)
 
 
 def test_a_leak_past_the_piston_is_named_with_its_size(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from sms.io.check import check_record
 from sms.io.records import Record, load_record
 from sms.io.rig import Declaration
 from sms.io.signals import KINDS, SIGNAL_UNITS, of_legs, without_leg
+from sms.parameters import FLOW_MAP, PARAMETERS
 
 Array = NDArray[np.float64]
 
@@ -101,6 +103,34 @@ def test_a_bench_rig_says_its_laws_its_loop_its_noise_and_what_differs_in_a_run(
 def test_a_mistake_is_named(tmp_path: Path, wrong: str, right: str, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         load_rig(bench(tmp_path, BENCH.replace(wrong, right)))
+
+
+def test_the_half_width_of_the_flow_map_is_that_of_all_its_parameters(tmp_path: Path) -> None:
+    def declared(text: str) -> set[float]:
+        return {load_rig(bench(tmp_path, text)).declared(n).uncertainty for n in FLOW_MAP}
+
+    assert declared(BENCH) == {PARAMETERS[FLOW_MAP[0]].uncertainty}
+    with_map = BENCH.replace("[model]", '[model]\nflow_map_uncertainty = "7 %"')
+    assert list(declared(with_map)) == pytest.approx([0.07])
+    one = with_map + "\n[parameters]\nflow_map_feed_2 = { value = 0.1, uncertainty = 0.01 }\n"
+    assert load_rig(bench(tmp_path, one)).declared("flow_map_feed_2") == Declaration(0.1, 0.01)
+    assert load_rig(bench(tmp_path, one)).declared("flow_map_feed_3").uncertainty == pytest.approx(
+        0.07
+    )
+
+
+@pytest.mark.parametrize(("said", "sentence"), [
+    ('"-3 %"', "-3 % is no half width of a known flow; write 0 to 100 %"),
+    ('"200 %"', "200 % is no half width"),
+    ('"3 mm"', "the unit 'mm' does not fit"),
+])  # fmt: skip
+def test_a_half_width_that_is_none_is_refused(tmp_path: Path, said: str, sentence: str) -> None:
+    text = BENCH.replace("[model]", f"[model]\nflow_map_uncertainty = {said}")
+    with pytest.raises(InputError, match=re.escape(f"[model] flow_map_uncertainty: {sentence}")):
+        load_rig(bench(tmp_path, text))
+    cylinder = '[rig]\nkind = "cylinder"\n[model]\nflow_map_uncertainty = "3 %"\n'
+    with pytest.raises(InputError, match="no flow of a cylinder is computed"):
+        load_rig(bench(tmp_path, cylinder + '[[records]]\nfile = "one.csv"\nrole = "identify"\n'))
 
 
 def test_signals_of_the_legs_have_units() -> None:

@@ -19,7 +19,6 @@ from sms.diagnosis.adequacy.residual_energy import (
 )
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import (
-    FLOW_MAP,
     baseline_hypothesis,
     cost_of_departure,
     fit,
@@ -32,6 +31,7 @@ from sms.estimation.run import is_held
 from sms.io.check import check_record
 from sms.io.records import load_record
 from sms.io.rig import Rig, load_rig
+from sms.parameters import FLOW_MAP
 
 from validation.random_cases import draw
 from validation.trials.foreign import judged

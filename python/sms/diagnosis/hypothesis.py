@@ -20,9 +20,8 @@ from sms.estimation.least_squares import MOST_STEPS, Free, Solution, changed
 from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
-from sms.parameters import PARAMETERS, Parameter
+from sms.parameters import FLOW_MAP, PARAMETERS, Parameter
 
-FLOW_MAP = tuple(n for n in PARAMETERS if n.startswith("flow_map_"))
 ALWAYS_UNCERTAIN = ("stiction_shape", *FLOW_MAP)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
 TURNS, SETTLED = 2, 0.2

@@ -35,7 +35,6 @@ from sms.diagnosis.design.still_hidden import still_hidden
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
 from sms.diagnosis.hypothesis import (
-    FLOW_MAP,
     Data,
     Fitted,
     baseline_hypothesis,
@@ -68,6 +67,7 @@ from sms.diagnosis.thresholds import UNKNOWN_SHARE
 from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
+from sms.parameters import FLOW_MAP
 from sms.report.wording_simulated import (
     conclusion,
     nearest_in_words,

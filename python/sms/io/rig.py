@@ -28,9 +28,16 @@ from sms.io.schema import (
     place,
     read_rig_text,
 )
-from sms.io.signals import KINDS, SIGNAL_UNITS, column_name, is_pressure, with_controller_simulated
+from sms.io.signals import (
+    KINDS,
+    SIGNAL_UNITS,
+    column_name,
+    is_pressure,
+    with_controller_simulated,
+    without_leg,
+)
 from sms.io.units import interval_to_si, to_si
-from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
+from sms.parameters import FLOW_MAP, LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 
 Hold = Literal["previous", "linear"]
 Role = Literal["identify", "validate", "test", "reference"]
@@ -164,7 +171,8 @@ def interpret(file: RigFile, path: Path) -> Rig:
         skip_first=data.skip_first,
         speed_above=speed_above,
         signals=_signals(file, path),
-        parameters={
+        parameters=_flow_map(file, path)
+        | {
             name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(file.rig.kind))
             for name, table in file.parameters.items()
         },
@@ -275,6 +283,22 @@ def _declaration(
         if uncertainty < 0.0:
             raise InputError(f"{where}: an uncertainty is not negative; write its half width")
     return Declaration(value, uncertainty, table.fit)
+
+
+def _flow_map(file: RigFile, path: Path) -> dict[str, Declaration]:
+    """The error of the valve's flow at each opening, where [model] says how large it may be."""
+    said = file.model.flow_map_uncertainty
+    if said is None:
+        return {}
+    where = f"{path}, [model] flow_map_uncertainty"
+    if "valve_command" not in map(without_leg, KINDS[file.rig.kind].needed) or (
+        file.rig.kind == "spool_test"
+    ):
+        raise InputError(f"{where}: no flow of a {file.rig.kind} is computed; leave it out")
+    half_width = interval_to_si(said, "1", where)
+    if not 0.0 <= half_width < 1.0:
+        raise InputError(f"{where}: {said} is no half width of a known flow; write 0 to 100 %")
+    return {name: Declaration(PARAMETERS[name].default, half_width) for name in FLOW_MAP}
 
 
 def check_bounds(parameter: Parameter, value: float, where: str) -> None:

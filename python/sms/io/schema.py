@@ -56,6 +56,8 @@ class ModelTable(Table):
     )
     valve: Literal["iso_0_4_mpa", "iso_0_2_mpa", "classic"] = "iso_0_4_mpa"
     chambers: Literal["polytropic", "energy"] = "polytropic"
+    flow_map_uncertainty: TextOrNumber | None = None
+    """Relative half width of the flow through the valve at an opening; without it, that of params.def."""
 
 
 class ControlTable(Table):

@@ -25,7 +25,7 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from sms import _core
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import FLOW_MAP, Fitted, free_of
+from sms.diagnosis.hypothesis import Fitted, free_of
 from sms.diagnosis.result import EquationError, ErrorCurve, FedEquations
 from sms.diagnosis.thresholds import AVERAGE, DRAWS, ENDS, SMOOTHING, STRETCH, TOLERANCE
 from sms.estimation.block_statistics import sum_by
@@ -34,6 +34,7 @@ from sms.estimation.least_squares import Free, changed, fit_windows
 from sms.estimation.problem import Problem
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
+from sms.parameters import FLOW_MAP
 
 
 @dataclass(frozen=True)
