@@ -12,11 +12,12 @@ import numpy as np
 import pandas as pd
 import pytest
 from sms.identification.actuator import BenchResult, identify_actuator
-from sms.identification.bench_records import clipped_samples, load_bench
+from sms.identification.bench_records import load_bench
 from sms.identification.bench_result import declarations, sentences, to_dict
 from sms.identification.spool import identify_spool
 from sms.identification.spool_result import sentences as spool_sentences
 from sms.io import InputError
+from sms.io.clipping import stuck_at_extremes
 from sms.report.actuator import actuator_html
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
@@ -127,8 +128,8 @@ def test_a_clipped_sensor_costs_its_windows_only(drawn: Drawn, tmp_path: Path) -
     assert any("clipped" in n and "windows" in n for n in records.notes)
     assert 0.3 < records.counted.mean() < 1.0
     ramp = np.linspace(0.0, 1.0, 500)
-    assert not clipped_samples(ramp).any()
-    assert clipped_samples(np.minimum(ramp, 0.9)).sum() == pytest.approx(50, abs=2)
+    assert not stuck_at_extremes(ramp).any()
+    assert stuck_at_extremes(np.minimum(ramp, 0.9)).sum() == pytest.approx(50, abs=2)
 
 
 def test_a_record_that_cannot_be_used_is_left_out_and_named(drawn: Drawn, tmp_path: Path) -> None:

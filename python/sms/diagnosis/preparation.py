@@ -8,6 +8,7 @@ from dataclasses import replace
 from sms.diagnosis.adequacy.repeatability import Ground
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import Data, baseline_hypothesis, fit, residual_of
+from sms.diagnosis.result import Finding
 from sms.estimation.block_statistics import windows_per_block
 from sms.estimation.kind import Kind
 from sms.estimation.noise import noise_of
@@ -24,6 +25,28 @@ def make_data(rig: Rig, records: Sequence[Record]) -> Data:
     runs = [kind.make_run(rig, record) for record in records]
     data = split(rig, kind, runs, noise_of(rig, kind, runs))
     return data if kind.whitened else in_blocks(data)
+
+
+def without_windows(data: Data) -> tuple[Finding, ...]:
+    """What is wrong with records of which no window is left, since a reading is clipped in each."""
+    found = []
+    for runs in (data.identify, data.validate, data.test, data.reference):
+        if runs is None or all(run.clipped is None for run in runs.motions):
+            continue
+        left = {w.record for w in runs.problem.windows}
+        found += [
+            Finding(
+                "error",
+                run.name,
+                None,
+                None,
+                "in every window of this record a reading sits at the end of its range",
+                "choose a sensor of another range, or leave this record out",
+            )
+            for number, run in enumerate(runs.motions)
+            if number not in left
+        ]
+    return tuple(found)
 
 
 def split(rig: Rig, kind: Kind, runs: Sequence[Run], noise: dict[str, float]) -> Data:

@@ -47,7 +47,7 @@ from sms.diagnosis.localisation.empirical_term import empirical_of
 from sms.diagnosis.localisation.equation_error import fed_equations
 from sms.diagnosis.localisation.residual_spectrum import symptoms_of
 from sms.diagnosis.localisation.unknown_inputs import estimate_unknown_inputs
-from sms.diagnosis.preparation import make_data
+from sms.diagnosis.preparation import make_data, without_windows
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.result import (
     Cause,
@@ -68,6 +68,7 @@ from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
 from sms.parameters import FLOW_MAP
+from sms.report.wording import data_fault
 from sms.report.wording_simulated import (
     conclusion,
     nearest_in_words,
@@ -129,7 +130,11 @@ def diagnose_plant(
             f"{rig.path}: records of a {rig.kind} can be read and checked, but not diagnosed yet; "
             f"what can be: cylinder, {', '.join(KINDS)}"
         )
-    case = investigate(make_data(rig, records), effects_of(rig), rng, progress)
+    data = make_data(rig, records)
+    if faults := without_windows(data):
+        findings = (*blank.findings, *faults)
+        return replace(blank, verdict="data-fault", findings=findings, sentence=data_fault(faults))
+    case = investigate(data, effects_of(rig), rng, progress)
     return complete(blank, case, rng, progress, empirical)
 
 

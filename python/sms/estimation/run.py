@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from sms.arrays import Array
+from sms.io.clipping import clipped_of
 from sms.io.records import Record
 from sms.io.rig import Hold, Rig
 
@@ -28,6 +30,17 @@ class Run:
     """What the command does between two samples: it goes straight to the next, or stays at the previous one."""
     window: float | None = field(default=None, kw_only=True)
     """s: of the windows it is cut into; None: as its kind has it."""
+    clipped: NDArray[np.bool_] | None = field(default=None, kw_only=True)
+    """(n,): samples at which a reading is at the end of its sensor's range; None: nowhere."""
+
+    def part(self, samples: slice) -> Run:
+        """Some of its samples, in a row."""
+        return replace(
+            self,
+            time=self.time[samples],
+            signals={n: v[samples] for n, v in self.signals.items()},
+            clipped=None if self.clipped is None else self.clipped[samples],
+        )
 
     @property
     def step(self) -> float:
@@ -66,6 +79,7 @@ def make_run(rig: Rig, record: Record) -> Run:
         for name, values in record.signals.items()
     }
     source = next(s for s in rig.records if s.name == record.name)
+    at_end = clipped_of(rig, record.signals)
     return Run(
         record.name,
         record.role,
@@ -74,4 +88,5 @@ def make_run(rig: Rig, record: Record) -> Run:
         record.gauge,
         {n: v - rig.declared(n).value for n, v in source.conditions.items()},
         hold=hold_of(rig, {n: v for n, v in signals.items() if n.startswith("valve_command")}),
+        clipped=np.any(list(at_end.values()), axis=0) if at_end else None,
     )

@@ -16,6 +16,7 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array, Index
 from sms.estimation.block_statistics import merge_windows
+from sms.estimation.chosen_windows import without_clipped
 from sms.estimation.discrepancy import Discrepancy, Whitened
 from sms.estimation.divergence import WithinNumbers
 from sms.estimation.kind import Kind
@@ -37,6 +38,8 @@ class Runs:
 
     windows_per_block: int = 1
     """Windows in a row that are resampled together, where noise lasts longer than one."""
+    complete: bool = False
+    """Whether windows in which a reading is clipped are kept."""
 
     @property
     def whitened(self) -> bool:
@@ -55,8 +58,11 @@ class Runs:
 
     @cached_property
     def problem(self) -> WindowProblem:
-        """The same where it does not diverge."""
-        return WithinNumbers(self.simulation) if self.whitened else self.simulation
+        """The same where it does not diverge, and where no reading is clipped."""
+        if not self.whitened:
+            return self.simulation
+        counted = WithinNumbers(self.simulation)
+        return counted if self.complete else without_clipped(counted, self.motions)
 
     def fit(
         self,
@@ -102,11 +108,10 @@ class Runs:
         runs, windows = [], self.problem.windows
         for k in chosen:
             window = windows[k]
-            run = self.motions[window.record]
-            lead = next(w.first for w in windows if w.record == window.record)
+            lead = next(w.first for w in self.simulation.windows if w.record == window.record)
             part = slice(max(window.first - lead, 0), window.first + window.samples)
-            signals = {n: v[part] for n, v in run.signals.items()}
-            runs.append(replace(run, time=run.time[part], signals=signals))
+            # What is clipped before it is not compared.
+            runs.append(replace(self.motions[window.record].part(part), clipped=None))
         return replace(self, motions=tuple(runs))
 
     def part(self, number: int) -> Runs:

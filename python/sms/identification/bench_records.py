@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms import _core
-from sms.arrays import Array
 from sms.estimation.noise import noise_of
 from sms.estimation.run import Run, make_run
 from sms.estimation.windows import Runs
 from sms.io.check import check_record
+from sms.io.clipping import stuck_at_extremes
 from sms.io.errors import InputError
 from sms.io.records import Finding, load_record
 from sms.io.rig import Rig, load_rig
@@ -26,7 +26,6 @@ from sms.rigs.kinds import KINDS
 
 MOVES = 1e-3  #: m, of travel that tells a piston that moves from one that creeps
 STIRS = 2e4  #: Pa, of change in a chamber that tells a valve that opens from one that leaks
-CLIPPED = 10  #: samples in a row at exactly the largest or the smallest reading
 SUPPLIES = 0.02  #: relative; supply pressures closer than this are one
 _CLIPPING = ("extension", "chamber_pressure_lower", "chamber_pressure_upper", "supply_pressure")
 
@@ -91,12 +90,12 @@ def load_bench(path: Path, command: str) -> BenchRecords:
             "nothing can be identified; record a run with commands beyond the dead band"
         )
     notes += [_of_record(r) for r in identify if not _moves(r)]
-    notes += _clipping(Runs(rig, identify, noise, kind))
+    notes += _clipping(Runs(rig, identify, noise, kind, complete=True))
     notes += _supply(rig, identify)
     return BenchRecords(
         rig,
-        Runs(rig, identify, noise, kind),
-        Runs(rig, validate, noise, kind) if validate else None,
+        Runs(rig, identify, noise, kind, complete=True),
+        Runs(rig, validate, noise, kind, complete=True) if validate else None,
         findings,
         tuple(notes),
         any(_moves(r) for r in identify),
@@ -147,7 +146,7 @@ def _clipping(runs: Runs) -> list[str]:
         for name in _CLIPPING:
             if name not in run.signals:
                 continue
-            clipped = clipped_samples(run.signals[name])
+            clipped = stuck_at_extremes(run.signals[name])
             if clipped.any():
                 said.append(
                     f"record {run.name}: {name} is clipped in {int(clipped.sum())} samples; the windows with them are "
@@ -156,34 +155,20 @@ def _clipping(runs: Runs) -> list[str]:
     return said
 
 
-def clipped_samples(values: Array) -> NDArray[np.bool_]:
-    """(n,): samples of a run of CLIPPED or more at exactly the largest or smallest reading.
-
-    A signal that rests there within its noise is no clipping: one that is repeated to the digit is.
-    """
-    out = np.zeros(values.size, dtype=np.bool_)
-    edges = np.flatnonzero(np.concatenate(([True], values[1:] != values[:-1])))
-    lengths = np.diff(np.append(edges, values.size))
-    if np.unique(values).size < 20:  # a coarse or a constant channel touches its extremes anyway
-        return out
-    for extreme in (np.max(values), np.min(values)):
-        for start, length in zip(edges, lengths, strict=True):
-            if values[start] == extreme and length >= CLIPPED:
-                out[start : start + length] = True
-    return out
-
-
 def whole_windows(runs: Runs) -> NDArray[np.bool_]:
     """(rows,): False in every window that holds a clipped reading."""
     keep = np.ones(runs.problem.rows, dtype=np.bool_)
-    clipped = [
-        np.any([clipped_samples(r.signals[n]) for n in _CLIPPING if n in r.signals], axis=0)
-        for r in runs.motions
-    ]
+    clipped = [_clipped(run) for run in runs.motions]
     for w in runs.problem.windows:
         if clipped[w.record][w.first : w.first + w.samples].any():
             keep[w.row : w.row + w.rows] = False
     return keep
+
+
+def _clipped(run: Run) -> NDArray[np.bool_]:
+    """(n,): samples at which a reading is at the end of its range, or repeats to the digit at its extreme."""
+    by_signal = [stuck_at_extremes(run.signals[n]) for n in _CLIPPING if n in run.signals]
+    return np.asarray(np.any([*by_signal, *([] if run.clipped is None else [run.clipped])], axis=0))
 
 
 def _supply(rig: Rig, runs: Sequence[Run]) -> list[str]:

@@ -268,7 +268,6 @@ _OF_PLANT: tuple[_Check, ...] = (
     check_plant.long_enough,
     check_plant.dead_channels,
     check_plant.clipped_channels,
-    check_plant.noisy_channels_that_stand_still,
     check_plant.driven_channels_that_hardly_move,
     pressure_range,
     usual_range,

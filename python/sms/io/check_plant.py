@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.arrays import Array
+from sms.io.clipping import clipped_of
 from sms.io.plausible import extension_range
 from sms.io.records import Finding, Record
 from sms.io.rig import Rig
@@ -21,7 +22,6 @@ MOVES = 0.02  #: of what a run usually sweeps: what counts as a change
 OPENS = (
     0.7  #: V from the centre; a command that goes so far both ways feeds and vents what it drives
 )
-NOISY = 0.5  #: of the resolution: with more noise than this a reading cannot stand still, at an end stop neither
 ENDS = {"extension", "valve_command", "setpoint", "tank_pressure", "tank_temperature"}
 """Signals that may rest at an extreme: end stops, a command that is held, a tank that is full."""
 
@@ -90,9 +90,21 @@ def dead_channels(rig: Rig, record: Record) -> Iterator[Finding]:
 
 
 def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
-    """A channel that rests at its own extreme for a large part of a record."""
+    """A channel that sits at the end of its range: nothing is judged there, and something must be left."""
+    at_end = clipped_of(rig, record.signals)
+    enough = not at_end or _whole_seconds(record, np.any(list(at_end.values()), axis=0)) >= SHORTEST
+    for name, where in at_end.items():
+        yield record.finding(
+            "warning" if enough else "error",
+            int(np.argmax(where)),
+            name,
+            f"sits at the end of its range for {100 * np.mean(where):.2g} % of the record",
+            "the windows with these samples are left out; if it is no end, look at its resolution and noise"
+            if enough
+            else "the sensor or its amplifier is saturated; choose another range",
+        )
     for name, values in record.signals.items():
-        if not _sweep(name) or without_leg(name) in ENDS:
+        if not _sweep(name) or without_leg(name) in ENDS or name in at_end:
             continue
         for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
             share = float(np.mean(values == extreme))
@@ -106,34 +118,11 @@ def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
                 )
 
 
-def noisy_channels_that_stand_still(rig: Rig, record: Record) -> Iterator[Finding]:
-    """A channel whose declared noise moves it from sample to sample, and that rests at its own extreme all the same."""
-    for name, values in record.signals.items():
-        source = rig.signals.get(name)
-        if not _sweep(name) or without_leg(name) not in ENDS or source is None:
-            continue
-        if not source.noise or source.noise < NOISY * source.resolution or np.ptp(values) == 0.0:
-            continue
-        for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
-            share = float(np.mean(values == extreme))
-            if share > CLIPPED_SHARE and not _is_declared(rig, name, float(extreme), source.noise):
-                yield record.finding(
-                    "error",
-                    int(np.argmax(values == extreme)),
-                    name,
-                    f"sits at its {word} value for {100 * share:.0f} % of the record, without its declared noise",
-                    "the sensor or its amplifier is saturated; choose another range",
-                )
-
-
-def _is_declared(rig: Rig, name: str, extreme: float, noise: float) -> bool:
-    """Whether the rig file says that this sensor reads no less, or no more."""
-    ends = (f"{name}_floor", f"{name}_ceiling")
-    return any(
-        abs(rig.parameters[end].value - extreme) < 4.0 * noise
-        for end in ends
-        if end in rig.parameters
-    )
+def _whole_seconds(record: Record, clipped: NDArray[np.bool_]) -> int:
+    """How many seconds of a record hold no such sample."""
+    time = record.signals["time"]
+    second = np.floor(time - time[0]).astype(int)
+    return int(np.sum(np.bincount(second, clipped, second[-1] + 1)[:-1] == 0))
 
 
 def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Finding]:

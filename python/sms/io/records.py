@@ -143,7 +143,10 @@ def _find_column(table: Table, wanted: SignalSource, rig: Rig) -> int | None:
 def _in_si(
     values: NDArray[np.float64], name: str, wanted: SignalSource, file: Path
 ) -> NDArray[np.float64]:
-    """scale * column in SI + offset, with the unit from [signals] or from the column's name."""
+    """scale * column in SI + offset, with the unit from [signals] or from the column's name.
+
+    What a converter rounded down lies half a step above on the average, in the sense in which the column counts.
+    """
     si_unit = SIGNAL_UNITS[wanted.signal]
     unit = wanted.unit if wanted.unit is not None else split_column_name(name)[1]
     if unit is None:
@@ -152,7 +155,9 @@ def _in_si(
             f"'{name} [{si_unit}]' or write unit = \"{si_unit}\" in [signals] {wanted.signal}"
         )
     where = f"{file}, column '{name}' for the signal '{wanted.signal}'"
-    return wanted.scale * array_to_si(values, unit, si_unit, where) + wanted.offset
+    up = 0.5 * wanted.resolution if wanted.rounding == "down" else 0.0
+    read = wanted.scale * array_to_si(values, unit, si_unit, where) + wanted.offset
+    return read + float(np.copysign(up, wanted.scale))
 
 
 def _bad_cells(

@@ -40,6 +40,7 @@ from sms.io.units import interval_to_si, to_si
 from sms.parameters import FLOW_MAP, LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 
 Hold = Literal["previous", "linear"]
+Rounding = Literal["nearest", "down"]
 Role = Literal["identify", "validate", "test", "reference"]
 
 
@@ -56,6 +57,10 @@ class SignalSource:
     optional: bool = False  #: a record may lack this column
     noise: float | None = None  #: declared standard deviation of one sample, SI; None: not declared
     resolution: float = 0.0  #: one step of the converter, SI
+    rounding: Rounding = "nearest"  #: of the converter
+    range: tuple[float, float] | None = (
+        None  #: the smallest and largest reading, SI; None: not declared
+    )
     hold: Hold | None = None  #: of a command, between its samples; None: as the record looks
 
 
@@ -236,6 +241,8 @@ def _signal(signal: str, table: SignalTable, path: Path) -> SignalSource:
     resolution = 0.0
     if table.resolution is not None:
         resolution = _size(signal, table.resolution, f"{where}, resolution")
+    if table.rounding is not None and resolution == 0.0:
+        raise InputError(f"{where}: rounding needs a step; write resolution too")
     return SignalSource(
         signal,
         table.column or column_name(signal),
@@ -245,8 +252,26 @@ def _signal(signal: str, table: SignalTable, path: Path) -> SignalSource:
         table.gauge,
         noise=noise,
         resolution=resolution,
+        rounding=table.rounding or "nearest",
+        range=_range(signal, table, where),
         hold=table.hold,
     )
+
+
+def _range(signal: str, table: SignalTable, where: str) -> tuple[float, float] | None:
+    """Where a sensor clips, as readings in SI."""
+    if table.range is None:
+        return None
+    if signal == "time" or without_leg(signal) in ("valve_command", "setpoint"):
+        raise InputError(f"{where}: only a sensor has a range; remove range")
+    if len(table.range) != 2:
+        raise InputError(f"{where}, range: write two readings, [smallest, largest]")
+    low, high = (to_si(end, SIGNAL_UNITS[signal], f"{where}, range") for end in table.range)
+    if low >= high:
+        raise InputError(
+            f"{where}, range: {table.range[0]} to {table.range[1]} is upside down; write the smaller end first"
+        )
+    return low, high
 
 
 def _size(signal: str, text: str | float, where: str) -> float:

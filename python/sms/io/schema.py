@@ -96,6 +96,10 @@ class SignalTable(Table):
     gauge: bool = False
     noise: TextOrNumber | None = None
     resolution: TextOrNumber | None = None
+    rounding: Literal["nearest", "down"] | None = None
+    """Of a converter: to the nearest step, or down to the step below."""
+    range: list[TextOrNumber] | None = None
+    """Of a sensor: the smallest and the largest reading, where it clips."""
     hold: Literal["previous", "linear"] | None = None
     """Of a command: whether it stays at the last sample until the next, or goes straight there."""
 

@@ -90,10 +90,11 @@ def sentence(verdict: Verdict, causes: Sequence[Cause], remainder: Remainder | N
 
 def data_fault(faults: Sequence[Finding]) -> str:
     first = faults[0]
-    where = f"{first.file}" + (f", line {first.line}" if first.line else "")
+    parts = (f"line {first.line}" if first.line else None, first.signal)
+    where = ", ".join([first.file, *(part for part in parts if part is not None)])
     return (
-        f"The data are not usable, so nothing is concluded from them. {where}, {first.signal}: "
-        f"{first.message}; {first.remedy}."
+        f"The data are not usable, so nothing is concluded from them. {where}: {first.message}; "
+        f"{first.remedy}."
     )
 
 

@@ -125,7 +125,11 @@ def errors_of(
     noise = {
         s: runs.noise[s] * float(np.sqrt(f)) for s, f in zip(runs.channels, floor, strict=True)
     }
-    fed = [feed(runs, run, equations, fitted.params, noise) for run in runs.motions]
+    fed = [
+        feed(runs, run, equations, fitted.params, noise)
+        for run in runs.motions
+        if _averaging(run).shape[0]
+    ]
     # An error of the tables would take any flow that is missing.
     free = [f for f in free_of(fitted.hypothesis) if f.name not in FLOW_MAP]
     neutral = [n for n in FLOW_MAP if n in fitted.hypothesis.free]
@@ -191,14 +195,18 @@ def _factor(covariance: Array) -> Array:
 
 
 def _averaging(run: Run) -> sparse.csr_matrix:
-    """(m, n): means over AVERAGE, the ends of the record left out."""
+    """(m, n): means over AVERAGE, the ends of the record left out, and what a clipped reading is smoothed into."""
     each, skipped = max(1, round(AVERAGE / run.step)), round(ENDS / run.step)
     count = max(1, (len(run.time) - 2 * skipped) // each)
     columns = skipped + np.arange(count * each)
     rows = np.repeat(np.arange(count), each)
-    return sparse.csr_matrix(
+    mean = sparse.csr_matrix(
         (np.full(count * each, 1.0 / each), (rows, columns)), shape=(count, len(run.time))
     )
+    if run.clipped is None:
+        return mean
+    spoilt = np.convolve(run.clipped, np.ones(_width(run.step)), "same") > 0.5
+    return mean[np.flatnonzero(mean @ spoilt == 0.0)]
 
 
 def _weights(step: float, derivative: int) -> Array:
