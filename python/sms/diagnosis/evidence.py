@@ -202,6 +202,8 @@ def gains_on(
     counts = resampled(runs.record, runs.block, rng)
     for number, run in enumerate(runs.motions):
         for c, channel in enumerate(runs.channels):
+            if not runs.compares(run, channel):
+                continue
             rows = (runs.record == number) & (runs.channel == c)
             where = Where(run.name, channel, runs.kind.units[channel], run.role)
             own = counts[:, np.unique(runs.block[rows])]
@@ -242,6 +244,8 @@ def _series(part: Runs, baseline: Fitted, final: Fitted) -> list[Series]:
     out = []
     for number, run in enumerate(part.motions):
         for c, channel in enumerate(part.channels):
+            if not part.compares(run, channel):
+                continue
             rows = (whole.record == number) & (whole.channel == c)
             places = whole.sample[rows]
             measured = run.signals[channel]

@@ -12,7 +12,8 @@ from scipy.signal import savgol_filter
 from sms.arrays import Array
 from sms.io.clipping import clipped_of
 from sms.io.records import Record
-from sms.io.rig import Hold, Rig
+from sms.io.rig import Rig
+from sms.io.signal_sources import Hold
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +33,8 @@ class Run:
     """s: of the windows it is cut into; None: as its kind has it."""
     clipped: NDArray[np.bool_] | None = field(default=None, kw_only=True)
     """(n,): samples at which a reading is at the end of its sensor's range; None: nowhere."""
+    commanded: bool = field(default=False, kw_only=True)
+    """The command is taken from the record, although the controller of other records is simulated."""
 
     def part(self, samples: slice) -> Run:
         """Some of its samples, in a row."""
@@ -89,4 +92,5 @@ def make_run(rig: Rig, record: Record) -> Run:
         {n: v - rig.declared(n).value for n, v in source.conditions.items()},
         hold=hold_of(rig, {n: v for n, v in signals.items() if n.startswith("valve_command")}),
         clipped=np.any(list(at_end.values()), axis=0) if at_end else None,
+        commanded=rig.control.controller == "simulated" and source.control.controller == "recorded",
     )

@@ -51,6 +51,10 @@ class Runs:
         """The outputs that every record has."""
         return tuple(s for s in self.kind.outputs if all(s in m.signals for m in self.motions))
 
+    def compares(self, run: Run, channel: str) -> bool:
+        """Whether an output is compared in a run: no command where no controller is simulated."""
+        return not (run.commanded and channel in self.kind.computed)
+
     @cached_property
     def simulation(self) -> WindowProblem:
         """The records as the core's problem."""

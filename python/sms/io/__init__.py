@@ -7,7 +7,8 @@ array in SI units, `check_rig` and `check_record` say what is wrong with them.
 from sms.io.check import check_record, check_rig, raise_if_unusable
 from sms.io.errors import InputError
 from sms.io.records import Finding, Record, load_record
-from sms.io.rig import Declaration, RecordSource, Rig, SignalSource, load_rig
+from sms.io.rig import Declaration, RecordSource, Rig, load_rig
+from sms.io.signal_sources import SignalSource
 from sms.io.write import (
     write_bytes_atomically,
     write_extended_rig,

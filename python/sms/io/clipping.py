@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.arrays import Array
-from sms.io.rig import Rig, SignalSource
+from sms.io.rig import Rig
+from sms.io.signal_sources import SignalSource
 from sms.io.signals import SIGNALS, without_leg
 
 CLIPPED = 10  #: samples in a row at exactly the largest or the smallest reading

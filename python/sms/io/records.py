@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.io.errors import InputError, did_you_mean
-from sms.io.rig import RecordSource, Rig, Role, SignalSource
-from sms.io.signals import SIGNAL_UNITS
+from sms.io.rig import RecordSource, Rig, Role
+from sms.io.signal_sources import SignalSource
+from sms.io.signals import SIGNAL_UNITS, without_leg
 from sms.io.tables import Table, is_can_log, read_table
 from sms.io.units import array_to_si, split_column_name
 
@@ -87,6 +88,7 @@ def load_record(rig: Rig, source: RecordSource) -> Record:
     for signal, wanted in rig.signals.items():
         column = _find_column(table, wanted, rig)
         if column is None:
+            _spared(signal, source)
             continue
         values, bad = table.numbers(column)
         signals[signal] = _in_si(values, table.names[column], wanted, source.file)
@@ -100,6 +102,15 @@ def load_record(rig: Rig, source: RecordSource) -> Record:
         findings=tuple(findings),
         lines=table.lines,
     )
+
+
+def _spared(signal: str, source: RecordSource) -> None:
+    """InputError for a set-point that a record lacks whose controller is simulated."""
+    if source.control.controller == "simulated" and without_leg(signal) == "setpoint":
+        raise InputError(
+            f"{source.file}: there is no column for the signal '{signal}', which a simulated controller needs; record "
+            'it, or write control = { controller = "recorded" } for this record'
+        )
 
 
 def _read(rig: Rig, file: Path) -> Table:

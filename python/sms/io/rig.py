@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -21,47 +21,22 @@ from sms.io.schema import (
     DataTable,
     ModelTable,
     ParameterTable,
+    RecordControl,
     RecordTable,
     RigFile,
-    SignalTable,
     parse_rig_text,
     place,
     read_rig_text,
 )
+from sms.io.signal_sources import SignalSource, sources_of
 from sms.io.signals import (
     KINDS,
-    SIGNAL_UNITS,
-    column_name,
-    is_pressure,
-    with_controller_simulated,
     without_leg,
 )
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import FLOW_MAP, LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
 
-Hold = Literal["previous", "linear"]
-Rounding = Literal["nearest", "down"]
 Role = Literal["identify", "validate", "test", "reference"]
-
-
-@dataclass(frozen=True)
-class SignalSource:
-    """Which column holds a signal: value in SI = scale * column in SI + offset."""
-
-    signal: str
-    column: str  #: "stroke" or "stroke [mm]"
-    unit: str | None = None  #: overrides the unit in the column's name
-    scale: float = 1.0
-    offset: float = 0.0  #: in the SI unit of the signal
-    gauge: bool = False  #: the sensor reads against ambient
-    optional: bool = False  #: a record may lack this column
-    noise: float | None = None  #: declared standard deviation of one sample, SI; None: not declared
-    resolution: float = 0.0  #: one step of the converter, SI
-    rounding: Rounding = "nearest"  #: of the converter
-    range: tuple[float, float] | None = (
-        None  #: the smallest and largest reading, SI; None: not declared
-    )
-    hold: Hold | None = None  #: of a command, between its samples; None: as the record looks
 
 
 @dataclass(frozen=True)
@@ -82,6 +57,8 @@ class RecordSource:
     role: Role
     conditions: Mapping[str, float] = field(default_factory=dict)
     """Parameters known to have another value in this run (SI): an added mass, another supply."""
+    control: ControlTable = field(default_factory=ControlTable)
+    """As [control] of the rig file, and the record, have it."""
 
 
 @dataclass(frozen=True)
@@ -118,6 +95,7 @@ class Rig:
     related: tuple[RelatedRig, ...] = ()
     model: ModelTable = field(default_factory=ModelTable)
     control: ControlTable = field(default_factory=ControlTable)
+    """With the controller that is simulated, if in any record."""
     effects: Path | None = None  #: a file with effects beside those of the catalogue
 
     def declared(self, name: str) -> Declaration:
@@ -157,6 +135,12 @@ def load_rig(path: str | os.PathLike[str]) -> Rig:
 def interpret(file: RigFile, path: Path) -> Rig:
     """Turn a rig file of right structure into SI units, known names and files that exist."""
     data = file.data
+    controls = [
+        _control(table, file.control, number, path) for number, table in enumerate(file.records)
+    ]
+    control = next((c for c in controls if c.controller == "simulated"), file.control)
+    if all(c.controller == "recorded" for c in controls):
+        control = control.model_copy(update={"controller": "recorded"})
     speed_above = None
     if data.speed_above is not None:
         where = f"{path}, [data] speed_above"
@@ -175,13 +159,13 @@ def interpret(file: RigFile, path: Path) -> Rig:
         ),
         skip_first=data.skip_first,
         speed_above=speed_above,
-        signals=_signals(file, path),
+        signals=sources_of(file, controls, path),
         parameters=_flow_map(file, path)
         | {
             name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(file.rig.kind))
             for name, table in file.parameters.items()
         },
-        records=_records(file.records, data, path),
+        records=_records(file.records, controls, data, path),
         related=tuple(
             RelatedRig(
                 beside(path, table.file, place("related", number, "file"), "rig file"),
@@ -190,96 +174,29 @@ def interpret(file: RigFile, path: Path) -> Rig:
             for number, table in enumerate(file.related)
         ),
         model=file.model,
-        control=file.control,
+        control=control,
         effects=None
         if file.effects is None
         else beside(path, file.effects.file, "[effects] file", "file of effects"),
     )
 
 
-def _signals(file: RigFile, path: Path) -> dict[str, SignalSource]:
-    kind = KINDS[file.rig.kind]
-    if file.control.controller == "simulated":
-        if file.control.loop == "open":
-            raise InputError(
-                f"{path}, [control]: in an open loop there is no controller to be simulated; "
-                'write loop = "closed", or controller = "recorded"'
-            )
-        kind = with_controller_simulated(kind)
-    if file.signals is None:
-        return {
-            signal: SignalSource(signal, column_name(signal), optional=signal in kind.optional)
-            for signal in kind.signals
-        }
-    for signal in file.signals:
-        if signal not in kind.signals:
-            raise InputError(
-                f"{path}, [signals]: a rig of kind '{file.rig.kind}' has no signal '{signal}'; "
-                f"{did_you_mean(signal, kind.signals)}"
-            )
-    for signal in kind.needed:
-        if signal not in file.signals:
-            raise InputError(
-                f"{path}, [signals]: the signal '{signal}' is needed but not listed; "
-                f'add a line {signal} = "name of its column"'
-            )
-    return {signal: _signal(signal, table, path) for signal, table in file.signals.items()}
-
-
-def _signal(signal: str, table: SignalTable, path: Path) -> SignalSource:
-    where = f"{path}, [signals] {signal}"
-    offset = 0.0
-    if table.offset is not None:
-        offset = interval_to_si(table.offset, SIGNAL_UNITS[signal], f"{where}, offset")
-    if table.gauge and not is_pressure(signal):
-        raise InputError(f"{where}: only a pressure can be gauge; remove gauge = true")
-    if table.scale == 0.0:
-        raise InputError(f"{where}: scale = 0 leaves nothing of the column; write its real scale")
-    if table.hold is not None and not signal.startswith("valve_command"):
-        raise InputError(f"{where}: only a valve command can have a hold; remove hold")
-    noise = None if table.noise is None else _size(signal, table.noise, f"{where}, noise")
-    resolution = 0.0
-    if table.resolution is not None:
-        resolution = _size(signal, table.resolution, f"{where}, resolution")
-    if table.rounding is not None and resolution == 0.0:
-        raise InputError(f"{where}: rounding needs a step; write resolution too")
-    return SignalSource(
-        signal,
-        table.column or column_name(signal),
-        table.unit,
-        table.scale,
-        offset,
-        table.gauge,
-        noise=noise,
-        resolution=resolution,
-        rounding=table.rounding or "nearest",
-        range=_range(signal, table, where),
-        hold=table.hold,
-    )
-
-
-def _range(signal: str, table: SignalTable, where: str) -> tuple[float, float] | None:
-    """Where a sensor clips, as readings in SI."""
-    if table.range is None:
-        return None
-    if signal == "time" or without_leg(signal) in ("valve_command", "setpoint"):
-        raise InputError(f"{where}: only a sensor has a range; remove range")
-    if len(table.range) != 2:
-        raise InputError(f"{where}, range: write two readings, [smallest, largest]")
-    low, high = (to_si(end, SIGNAL_UNITS[signal], f"{where}, range") for end in table.range)
-    if low >= high:
+def _control(table: RecordTable, rig: ControlTable, number: int, path: Path) -> ControlTable:
+    """Of one record: as [control] has it, but for what the record says. An open loop has no controller."""
+    said = table.control
+    implied: dict[str, str] = {}
+    if said.loop == "open":
+        implied["controller"] = "recorded"
+    if said.controller == "simulated":
+        implied["loop"] = "closed"
+    control = rig.model_copy(update=implied | said.model_dump(exclude_none=True))
+    if control.loop == "open" and control.controller == "simulated":
+        where = "[control]" if said == RecordControl() else place("records", number, "control")
         raise InputError(
-            f"{where}, range: {table.range[0]} to {table.range[1]} is upside down; write the smaller end first"
+            f"{path}, {where}: in an open loop there is no controller to be simulated; "
+            'write loop = "closed", or controller = "recorded"'
         )
-    return low, high
-
-
-def _size(signal: str, text: str | float, where: str) -> float:
-    """A noise or a resolution in SI: a difference, not negative."""
-    size = interval_to_si(text, SIGNAL_UNITS[signal], where)
-    if size < 0.0:
-        raise InputError(f"{where}: {text} is negative; write its size")
-    return size
+    return control
 
 
 def _parameters_of(kind: str) -> Mapping[str, Parameter]:
@@ -336,7 +253,9 @@ def check_bounds(parameter: Parameter, value: float, where: str) -> None:
         )
 
 
-def _records(tables: list[RecordTable], data: DataTable, path: Path) -> tuple[RecordSource, ...]:
+def _records(
+    tables: list[RecordTable], controls: Sequence[ControlTable], data: DataTable, path: Path
+) -> tuple[RecordSource, ...]:
     files = find_files([table.file for table in tables], data, path)
     records = tuple(
         # "O-ring_1bar.csv.gz" is named "O-ring_1bar" when the rig file gives no name.
@@ -345,8 +264,9 @@ def _records(tables: list[RecordTable], data: DataTable, path: Path) -> tuple[Re
             file,
             table.role,
             _conditions(table, f"{path}, {place('records', number, 'conditions')}"),
+            control,
         )
-        for number, (table, file) in enumerate(zip(tables, files, strict=True))
+        for number, (table, file, control) in enumerate(zip(tables, files, controls, strict=True))
     )
     if (file := _repeated([str(record.file) for record in records])) is not None:
         raise InputError(

@@ -112,6 +112,13 @@ class ParameterTable(Table):
     fit: bool = False
 
 
+class RecordControl(Table):
+    """What [control] says, where it is otherwise in one record."""
+
+    loop: Literal["open", "closed"] | None = None
+    controller: Literal["recorded", "simulated"] | None = None
+
+
 class RecordTable(Table):
     """One entry of [[records]]."""
 
@@ -119,6 +126,7 @@ class RecordTable(Table):
     role: Literal["identify", "validate", "test", "reference"]
     name: str | None = None
     conditions: dict[str, TextOrNumber] = Field(default_factory=dict)
+    control: RecordControl = RecordControl()
 
 
 class RelatedTable(Table):
@@ -234,7 +242,7 @@ def _sentence(model: type[Table], error: Mapping[str, Any], tables: Mapping[str,
         return f"[{key}]: there can be several; write [[{key}]] with double brackets"
     if kind == "literal_error":
         given = str(error["input"])
-        words = _words(_tables_of(model)[str(parents[0])], str(key))
+        words = _words(_home(model, parents), str(key))
         return f"{where}: '{given}' is not known; {did_you_mean(given, words)}"
     problem = error["ctx"]["error"] if kind == "value_error" else _EXPECTED.get(kind, error["msg"])
     return f"{where}: {problem}"
@@ -248,7 +256,7 @@ def _missing_key(parents: list[str | int], key: str) -> str:
 
 def _unknown_key(model: type[Table], parents: list[str | int], key: str) -> str:
     tables = _tables_of(model)
-    known = list((tables[str(parents[0])] if parents else model).model_fields)
+    known = list(_home(model, parents).model_fields)
     if not parents:
         return f"the table [{key}] is not known; {did_you_mean(key, known)}"
     where = place(*parents)
@@ -256,6 +264,14 @@ def _unknown_key(model: type[Table], parents: list[str | int], key: str) -> str:
     if homes and nearest(key, known) is None:
         return f"{where}: the key '{key}' does not belong here; move it to [{homes[0]}]"
     return f"{where}: the key '{key}' is not known; {did_you_mean(key, known)}"
+
+
+def _home(model: type[Table], keys: list[str | int]) -> type[Table]:
+    """The table at a place of a file."""
+    here = model
+    for key in keys:
+        here = _tables_of(here).get(str(key), here)
+    return here
 
 
 def keys_of(model: type[Table]) -> dict[str, list[str]]:

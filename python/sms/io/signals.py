@@ -23,13 +23,17 @@ class Kind:
         return self.needed + self.optional
 
 
-def with_controller_simulated(kind: Kind) -> Kind:
-    """The same where a simulated controller drives the valve: its set-point is needed, the command is not."""
+def with_controller_simulated(kind: Kind, commanded: bool = False) -> Kind:
+    """The same where a simulated controller drives the valve: its set-point is needed, the command is not.
+
+    commanded: in other records it is not simulated, so that they need their command.
+    """
     setpoints = tuple(s for s in kind.optional if without_leg(s) == "setpoint")
     commands = tuple(s for s in kind.needed if without_leg(s) == "valve_command")
+    spared = () if commanded else commands
     return Kind(
-        tuple(s for s in kind.needed if s not in commands) + setpoints,
-        commands + tuple(s for s in kind.optional if s not in setpoints),
+        tuple(s for s in kind.needed if s not in spared) + setpoints,
+        spared + tuple(s for s in kind.optional if s not in setpoints),
     )
 
 

@@ -35,9 +35,13 @@ def of_command(rig: Rig) -> str:
         else ""
     )
     whose = "the controller of each leg" if rig.kind == "platform" else "its controller"
+    taken = [r.name for r in rig.records if r.control.controller == "recorded"]
+    others = (
+        f" In {', '.join(taken)} the valve's command is taken from the record." if taken else ""
+    )
     return (
         f"Closed loop, {whose} ({law}) simulated: it computes the valve's command from the recorded set-point and "
-        f"the simulated extension{held}."
+        f"the simulated extension{held}.{others}"
     )
 
 

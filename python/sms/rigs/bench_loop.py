@@ -14,6 +14,7 @@ from sms import _core
 from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.rigs.bench import BENCH, LONGEST_STEP, OUTPUTS, record_of
+from sms.rigs.mixed_loops import mixed
 from sms.rigs.pneumatic import NOTHING, controller_of, in_windows
 
 COMMAND = "valve_command"
@@ -44,7 +45,7 @@ BENCH_LOOP = replace(
     BENCH,
     outputs=(*OUTPUTS, COMMAND),
     hidden=HIDDEN,
-    make_problem=make_problem,
+    make_problem=mixed(make_problem, BENCH.make_problem, (COMMAND,), len(HIDDEN)),
     computed={COMMAND: COMMAND_NOISE},
 )
 BENCH_LOOP_BLIND = replace(BENCH_LOOP, equations=None, shown=("extension", "setpoint"))

@@ -17,6 +17,7 @@ from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import LEGS, of_legs
 from sms.rigs.bench_loop import COMMAND_NOISE
+from sms.rigs.mixed_loops import mixed
 from sms.rigs.platform import LONGEST_STEP, NOT_OF_LEGS, OUTPUTS, PLATFORM, columns, record_of
 from sms.rigs.pneumatic import controller_of, in_windows
 
@@ -50,7 +51,7 @@ PLATFORM_LOOP = replace(
     PLATFORM,
     outputs=(*OUTPUTS, *COMMANDS),
     hidden=HIDDEN,
-    make_problem=make_problem,
+    make_problem=mixed(make_problem, PLATFORM.make_problem, COMMANDS, len(HIDDEN)),
     computed=dict.fromkeys(COMMANDS, COMMAND_NOISE),
 )
 PLATFORM_LOOP_BLIND = replace(PLATFORM_LOOP, equations=None, shown=of_legs("extension", "setpoint"))

@@ -31,7 +31,8 @@ from sms.estimation.run import Run, make_run
 from sms.estimation.windows import Runs
 from sms.io.errors import InputError
 from sms.io.records import load_record
-from sms.io.rig import DataLayout, Rig, SignalSource, load_rig
+from sms.io.rig import DataLayout, Rig, load_rig
+from sms.io.signal_sources import SignalSource
 from sms.io.signals import SIGNALS, of_legs, without_leg
 from sms.parameters import common_parameter
 from sms.rigs.kinds import KINDS, kind_of
