@@ -132,6 +132,22 @@ class Gain:
 
 
 @dataclass(frozen=True)
+class FreeRun:
+    """Error of a simulation over one whole record, from the initial state that fits it best. In the signal's unit."""
+
+    record: str
+    signal: str
+    unit: str
+    baseline_rms: float
+    """NaN where the run diverges."""
+    extended_rms: float
+    baseline_note: str
+    """"leaves the stroke at 3.20 s", "diverges at 1.02 s"; empty where it does neither."""
+    extended_note: str
+    role: str = "validate"
+
+
+@dataclass(frozen=True)
 class Symptom:
     """What is wrong in one signal: the baseline's error within its windows on records that it was not fitted to."""
 
@@ -377,6 +393,8 @@ class Diagnosis:
     symptoms: tuple[Symptom, ...] = ()
     """What is wrong in each signal, for rigs that are simulated."""
     gain: tuple[Gain, ...] = ()
+    free_run: tuple[FreeRun, ...] = ()
+    """The same over whole records, for rigs that are simulated."""
     in_use: tuple[InUse, ...] = ()
     """What the causes mean to whoever uses the machine; empty without a cause."""
     remainder: Remainder | Unexplained | None = None

@@ -34,6 +34,7 @@ from sms.diagnosis.design.next_experiment import next_experiment
 from sms.diagnosis.design.still_hidden import still_hidden
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
+from sms.diagnosis.free_run import free_runs
 from sms.diagnosis.hypothesis import (
     Data,
     Fitted,
@@ -216,6 +217,7 @@ def complete(
         else (),
         symptoms=symptoms_of(baseline, data, case.before.floor),
         gain=gain,
+        free_run=free_runs(baseline, final, data),
         in_use=in_use(data.rig, baseline.params, final.params) if causes else (),
         hidden=hidden,
         fed=fed,

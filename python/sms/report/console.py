@@ -10,10 +10,18 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from sms.diagnosis.result import Cause, Diagnosis, Gain, ParameterValue, Remainder, Unexplained
+from sms.diagnosis.result import (
+    Cause,
+    Diagnosis,
+    FreeRun,
+    Gain,
+    ParameterValue,
+    Remainder,
+    Unexplained,
+)
 from sms.report.verdict import VERDICT_WORDS, is_shift, parameter_text
 from sms.report.wording import INSENSITIVE, arranged
-from sms.report.wording_simulated import still_hidden_in_words
+from sms.report.wording_simulated import free_run_in_words, still_hidden_in_words, worst_free_runs
 from sms.units_display import (
     capital,
     format_aligned,
@@ -34,6 +42,7 @@ def print_diagnosis(diagnosis: Diagnosis, console: Console) -> None:
         _faults(diagnosis),
         _causes(diagnosis),
         _gain(diagnosis),
+        _free_run(diagnosis),
         _empirical(diagnosis),
         _notes(diagnosis),
     )
@@ -118,7 +127,21 @@ def _gain(diagnosis: Diagnosis) -> Padding | None:
     return _block(table)
 
 
-def _record_of(g: Gain, diagnosis: Diagnosis) -> str:
+def _free_run(diagnosis: Diagnosis) -> Padding | None:
+    """Of each signal the record that is furthest off."""
+    if not diagnosis.free_run:
+        return None
+    table = _table("RMS error of a free run over the whole record, the worst of each signal")
+    table.add_column("record")
+    table.add_column("baseline", justify="right")
+    table.add_column("extended", justify="right", style="bold")
+    for run in worst_free_runs(diagnosis.free_run):
+        before, after = free_run_in_words(run)
+        table.add_row(_record_of(run, diagnosis), before, after if diagnosis.causes else "-")
+    return _block(table)
+
+
+def _record_of(g: Gain | FreeRun, diagnosis: Diagnosis) -> str:
     several = len({x.signal for x in diagnosis.gain}) > 1
     tested = " (test)" if g.role == "test" else ""
     return f"{g.record}{tested}, {words(g.signal)}" if several else f"{g.record}{tested}"

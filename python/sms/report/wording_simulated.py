@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import inf, isnan
 
 from sms.diagnosis.adequacy.hysteresis import Hysteresis
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit
@@ -14,6 +15,7 @@ from sms.diagnosis.result import (
     Cause,
     FedEquations,
     Finding,
+    FreeRun,
     Gain,
     Hidden,
     StillHidden,
@@ -95,6 +97,30 @@ def still_hidden_in_words(effects: Sequence[StillHidden]) -> str:
         f"These records do not exclude: {'; '.join(listed)}. The limits of all effects are in diagnosis.json "
         "(still_hidden)."
     )
+
+
+def worst_free_runs(runs: Sequence[FreeRun]) -> list[FreeRun]:
+    """Of each signal the run that is furthest off; one that diverges first of all."""
+    signals = dict.fromkeys(run.signal for run in runs)
+    return [max((r for r in runs if r.signal == s), key=_how_far_off) for s in signals]
+
+
+def _how_far_off(run: FreeRun) -> float:
+    return inf if isnan(run.baseline_rms) else run.baseline_rms
+
+
+def free_run_in_words(run: FreeRun) -> tuple[str, str]:
+    """Baseline and extended: "12.3 mm (leaves the stroke at 3.20 s)"."""
+    sizes = [run.baseline_rms, run.extended_rms]
+    known = [size for size in sizes if not isnan(size)]
+    texts = iter(format_aligned(known, run.unit) if known else [])
+    said = ["" if isnan(size) else next(texts) for size in sizes]
+    notes = (run.baseline_note, run.extended_note)
+    before, after = (
+        f"{text} ({note})" if text and note else text or note
+        for text, note in zip(said, notes, strict=True)
+    )
+    return before, after
 
 
 def block_in_words(equation: str) -> str:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from sms.diagnosis.result import Diagnosis, Gain, InUse, Remainder, Unexplained
+from sms.diagnosis.result import Diagnosis, FreeRun, Gain, InUse, Remainder, Unexplained
 from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch, table
 from sms.report.wording import ARRANGED
+from sms.report.wording_simulated import free_run_in_words, worst_free_runs
 from sms.units_display import (
     capital,
     format_aligned,
@@ -74,7 +75,8 @@ def gain(diagnosis: Diagnosis) -> str:
             f"<details><summary>The other {len(diagnosis.gain) - len(first)} of "
             f"{len(diagnosis.gain)} records and signals</summary>{rest}</details>"
         )
-    return section("worth", title, body + _in_use(diagnosis.in_use) + legend(diagnosis))
+    body += _free_runs(diagnosis) + _in_use(diagnosis.in_use)
+    return section("worth", title, body + legend(diagnosis))
 
 
 def _worst_of_each(gains: Sequence[Gain]) -> list[Gain]:
@@ -83,6 +85,32 @@ def _worst_of_each(gains: Sequence[Gain]) -> list[Gain]:
     if len(signals) == 1:
         return list(gains)
     return [max((g for g in gains if g.signal == s), key=lambda g: g.baseline_rms) for s in signals]
+
+
+def _free_runs(diagnosis: Diagnosis) -> str:
+    """The worst of each signal; the others folded away."""
+    runs = diagnosis.free_run
+    if not runs:
+        return ""
+    first = worst_free_runs(runs)
+    body = _free_run_table(first, bool(diagnosis.causes))
+    if len(first) < len(runs):
+        rest = _free_run_table([r for r in runs if r not in first], bool(diagnosis.causes))
+        body += f"<details><summary>The other {len(runs) - len(first)} free runs</summary>{rest}</details>"
+    return body
+
+
+def _free_run_table(runs: Sequence[FreeRun], extended: bool) -> str:
+    rows = []
+    for run in runs:
+        before, after = map(esc, free_run_in_words(run))
+        where = f"<strong>{esc(run.record)}</strong>, {esc(words(run.signal))}{TESTED if run.role == 'test' else ''}"
+        rows.append((where, before, after) if extended else (where, before))
+    caption = (
+        "RMS error of a free run over the whole record, from the initial state that fits it best"
+    )
+    head = ("Record and signal", "Baseline", "Extended")
+    return table(caption, head if extended else head[:2], rows, "in-use")
 
 
 def _in_use(quantities: Sequence[InUse]) -> str:

@@ -31,7 +31,7 @@ def make_problem(
     return _core.BenchProblem(
         records=[record_of(run, channels, command=run.signals["valve_command"]) for run in runs],
         noise={s: noise[s] for s in OUTPUTS},
-        **in_windows(rig, LONGEST_STEP),
+        **in_windows(rig, LONGEST_STEP, runs),
     )
 
 

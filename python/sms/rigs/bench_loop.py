@@ -32,7 +32,7 @@ def make_problem(
         noise={s: noise[s] for s in (*OUTPUTS, COMMAND)},
         said=rig.start(),
         **controller_of(rig),
-        **in_windows(rig, LONGEST_STEP),
+        **in_windows(rig, LONGEST_STEP, runs),
     )
 
 

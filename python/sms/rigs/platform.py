@@ -41,7 +41,7 @@ def make_problem(
     problem = _core.PlatformProblem(
         records=[record_of(run, channels, command=columns(run, "valve_command")) for run in runs],
         noise={s: noise[s] for s in OUTPUTS},
-        **in_windows(rig, LONGEST_STEP),
+        **in_windows(rig, LONGEST_STEP, runs),
     )
     # Its parameters are LegParams, which are Params with more names.
     return cast(WindowProblem, problem)

@@ -36,7 +36,7 @@ def make_problem(
         noise={s: noise[s] for s in (*OUTPUTS, *COMMANDS)},
         said=said,
         **controller_of(rig),
-        **in_windows(rig, LONGEST_STEP),
+        **in_windows(rig, LONGEST_STEP, runs),
     )
     return cast(WindowProblem, problem)  # as in platform.py
 

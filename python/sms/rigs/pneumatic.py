@@ -10,6 +10,7 @@ import numpy as np
 
 from sms import simulation
 from sms.arrays import Array
+from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import without_leg
 
@@ -30,13 +31,13 @@ class InWindows(TypedDict):
     threads: int
 
 
-def in_windows(rig: Rig, longest_step: float) -> InWindows:
+def in_windows(rig: Rig, longest_step: float, runs: Sequence[Run]) -> InWindows:
     """The laws of the rig file; longest_step, s, of the integration; threads as SMS_THREADS says."""
     return {
         "friction": rig.model.friction,
         "valve": rig.model.valve,
         "chambers": rig.model.chambers,
-        "window": WINDOW,
+        "window": max(run.window or WINDOW for run in runs),
         "longest_step": longest_step,
         "threads": int(os.environ.get("SMS_THREADS", "2")),
     }
