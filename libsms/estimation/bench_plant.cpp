@@ -17,10 +17,10 @@ void check(const BenchRecord& record, std::size_t number) {
     detail::check_signal(name, "command", record.command, samples);
   }
   detail::check_signal(name, "extension", record.extension, samples);
-  detail::check_signal(name, "pressure_lower", record.pressure_lower, samples);
-  detail::check_signal(name, "pressure_upper", record.pressure_upper, samples);
+  detail::check_readings(name, "pressure_lower", record.pressure_lower, samples);
+  detail::check_readings(name, "pressure_upper", record.pressure_upper, samples);
   if (record.supply_pressure.size() > 0) {
-    detail::check_signal(name, "supply_pressure", record.supply_pressure, samples);
+    detail::check_readings(name, "supply_pressure", record.supply_pressure, samples);
   }
 }
 

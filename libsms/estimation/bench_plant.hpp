@@ -49,7 +49,7 @@ class BenchPlant {
   static constexpr int kFelt = 4;    // without droop, deflection and heat
   static constexpr int kHidden = 3;  // force, N; mass flow into the lower and into the upper chamber, kg/s
 
-  // std::invalid_argument for arrays of different lengths or numbers that are not finite.
+  // std::invalid_argument for arrays of different lengths or numbers that are not finite; a reading may be NaN.
   BenchPlant(std::vector<BenchRecord> records, const BenchNoise& noise, const ActuatorLaws& laws, double longest_step);
 
   static double start_scale(int k) {

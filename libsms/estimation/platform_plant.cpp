@@ -22,15 +22,15 @@ void check(const PlatformRecord& record, std::size_t number) {
       detail::check_signal(name, "command", record.command[i], samples);
     }
     detail::check_signal(name, "extension", record.extension[i], samples);
-    detail::check_signal(name, "pressure_lower", record.pressure_lower[i], samples);
-    detail::check_signal(name, "pressure_upper", record.pressure_upper[i], samples);
+    detail::check_readings(name, "pressure_lower", record.pressure_lower[i], samples);
+    detail::check_readings(name, "pressure_upper", record.pressure_upper[i], samples);
   }
   if (record.supply_pressure.size() > 0) {
-    detail::check_signal(name, "supply_pressure", record.supply_pressure, samples);
+    detail::check_readings(name, "supply_pressure", record.supply_pressure, samples);
   }
   if (record.roll.size() > 0 || record.pitch.size() > 0) {
-    detail::check_signal(name, "roll", record.roll, samples);
-    detail::check_signal(name, "pitch", record.pitch, samples);
+    detail::check_readings(name, "roll", record.roll, samples);
+    detail::check_readings(name, "pitch", record.pitch, samples);
   }
 }
 

@@ -61,7 +61,8 @@ class PlatformPlant {
   static constexpr int kFelt = 12;   // without droop and deflection
   static constexpr int kHidden = 9;  // three each of force, N; mass flow into lower and into upper chamber, kg/s
 
-  // std::invalid_argument for arrays of different lengths, numbers that are not finite, extensions that are no pose.
+  // std::invalid_argument for arrays of different lengths, numbers that are not finite (a pressure, roll or pitch may be
+  // NaN), extensions that are no pose.
   PlatformPlant(std::vector<PlatformRecord> records, const PlatformNoise& noise, const ActuatorLaws& laws,
                 MassModel masses, double longest_step);
 

@@ -51,10 +51,11 @@ S logged(const Sensor<S>& sensor, const S& value, const S& rate, double step, in
 }
 
 // Predicted less measured over the noise, against the reading `late` samples later: there the late clock has this
-// sample. Beyond the record: nothing.
+// sample. Beyond the record, and where the reading is NaN: nothing.
 template <typename S>
 S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Index sample, double noise) {
-  return sample < 0 || sample >= measured.size() ? S(0) : S((predicted - S(measured[sample])) * S(1.0 / noise));
+  const bool is_read = sample >= 0 && sample < measured.size() && !std::isnan(measured[sample]);
+  return is_read ? S((predicted - S(measured[sample])) * S(1.0 / noise)) : S(0);
 }
 
 }  // namespace detail

@@ -13,12 +13,12 @@ void check(const TankPlantRecord& record, std::size_t number) {
     throw std::invalid_argument(name + ": a step of time above zero and 20 samples at least are needed");
   }
   detail::check_signal(name, "command", record.command, samples);
-  detail::check_signal(name, "pressure", record.pressure, samples);
+  detail::check_readings(name, "pressure", record.pressure, samples);
   if (record.temperature.size() > 0) {
-    detail::check_signal(name, "temperature", record.temperature, samples);
+    detail::check_readings(name, "temperature", record.temperature, samples);
   }
   if (record.supply_pressure.size() > 0) {
-    detail::check_signal(name, "supply_pressure", record.supply_pressure, samples);
+    detail::check_readings(name, "supply_pressure", record.supply_pressure, samples);
   }
 }
 

@@ -42,7 +42,7 @@ class TankPlant {
   static constexpr int kFelt = kStart;
   static constexpr int kHidden = 2;  // mass flow into the tank, kg/s; pressure at the head of the supply line, Pa
 
-  // std::invalid_argument for arrays of different lengths or numbers that are not finite.
+  // std::invalid_argument for arrays of different lengths or numbers that are not finite; a reading may be NaN.
   TankPlant(std::vector<TankPlantRecord> records, const TankNoise& noise, const ActuatorLaws& laws,
             double longest_step);
 

@@ -54,7 +54,7 @@ def _rms(whole: Runs, record: int, channel: int, errors: Array) -> float:
     rows = (whole.record == record) & (whole.channel == channel)
     if _diverges(errors[whole.record == record]).any():
         return float("nan")
-    clipped = whole.motions[record].clipped
+    clipped = whole.motions[record].clipped.get(whole.channels[channel])
     if clipped is not None:
         rows &= ~clipped[whole.sample]
     return float(np.sqrt(np.mean(errors[rows] ** 2))) if rows.any() else float("nan")

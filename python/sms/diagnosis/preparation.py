@@ -31,7 +31,7 @@ def without_windows(data: Data) -> tuple[Finding, ...]:
     """What is wrong with records of which no window is left, since a reading is clipped in each."""
     found = []
     for runs in (data.identify, data.validate, data.test, data.reference):
-        if runs is None or all(run.clipped is None for run in runs.motions):
+        if runs is None or not any(run.clipped for run in runs.motions):
             continue
         left = {w.record for w in runs.problem.windows}
         found += [

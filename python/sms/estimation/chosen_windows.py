@@ -1,6 +1,7 @@
-"""A problem's windows without those in which a reading is at the end of its sensor's range.
+"""A problem's windows without those of which too much is at the end of a sensor's range.
 
-The initial state of a window is that which fits all its samples best, so that a clipped reading spoils all of it.
+A clipped reading is compared with nothing (Run.compared). But of a signal that is mostly clipped the initial state is
+not known, and along the extension the motion is followed sample by sample.
 """
 
 from __future__ import annotations
@@ -15,6 +16,10 @@ from sms import _core
 from sms.arrays import Array, Index
 from sms.estimation.problem import Window, WindowProblem
 from sms.estimation.run import Run
+from sms.io.signals import without_leg
+
+MOST_CLIPPED = 0.5
+"""Share of a window's samples of one signal. Judgement: half of them tell its initial value."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +76,19 @@ class ChosenWindows:
 
 
 def without_clipped(problem: WindowProblem, runs: Sequence[Run]) -> WindowProblem:
-    """The problem where no reading of its runs is clipped; itself where none is anywhere."""
-    if all(run.clipped is None for run in runs):
-        return problem
+    """The problem without windows that clipped readings spoil; itself where there are none."""
 
-    def is_clean(w: Window) -> bool:
-        clipped = runs[w.record].clipped
-        return clipped is None or not clipped[w.first : w.first + w.samples].any()
+    def is_spoilt(w: Window) -> bool:
+        return any(
+            c[w.first : w.first + w.samples].mean() > (0.0 if is_path(n) else MOST_CLIPPED)
+            for n, c in runs[w.record].clipped.items()
+        )
 
     windows = problem.windows
-    return ChosenWindows(problem, tuple(k for k, w in enumerate(windows) if is_clean(w)))
+    chosen = tuple(k for k, w in enumerate(windows) if not is_spoilt(w))
+    return problem if len(chosen) == len(windows) else ChosenWindows(problem, chosen)
+
+
+def is_path(signal: str) -> bool:
+    """Whether a simulation follows the readings themselves."""
+    return without_leg(signal) == "extension"

@@ -31,8 +31,8 @@ class Run:
     """What the command does between two samples: it goes straight to the next, or stays at the previous one."""
     window: float | None = field(default=None, kw_only=True)
     """s: of the windows it is cut into; None: as its kind has it."""
-    clipped: NDArray[np.bool_] | None = field(default=None, kw_only=True)
-    """(n,): samples at which a reading is at the end of its sensor's range; None: nowhere."""
+    clipped: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict, kw_only=True)
+    """Signal -> (n,) samples at which its reading is at the end of its sensor's range; only signals that have such."""
     commanded: bool = field(default=False, kw_only=True)
     """The command is taken from the record, although the controller of other records is simulated."""
 
@@ -42,8 +42,13 @@ class Run:
             self,
             time=self.time[samples],
             signals={n: v[samples] for n, v in self.signals.items()},
-            clipped=None if self.clipped is None else self.clipped[samples],
+            clipped={n: c[samples] for n, c in self.clipped.items()},
         )
+
+    def compared(self, signal: str) -> Array:
+        """(n,): the readings, NaN where nothing is known but that the truth lies beyond the sensor's range."""
+        values, at_end = self.signals[signal], self.clipped.get(signal)
+        return values if at_end is None or at_end.all() else np.where(at_end, np.nan, values)
 
     @property
     def step(self) -> float:
@@ -82,7 +87,6 @@ def make_run(rig: Rig, record: Record) -> Run:
         for name, values in record.signals.items()
     }
     source = next(s for s in rig.records if s.name == record.name)
-    at_end = clipped_of(rig, record.signals)
     return Run(
         record.name,
         record.role,
@@ -91,6 +95,6 @@ def make_run(rig: Rig, record: Record) -> Run:
         record.gauge,
         {n: v - rig.declared(n).value for n, v in source.conditions.items()},
         hold=hold_of(rig, {n: v for n, v in signals.items() if n.startswith("valve_command")}),
-        clipped=np.any(list(at_end.values()), axis=0) if at_end else None,
+        clipped=clipped_of(rig, record.signals),
         commanded=rig.control.controller == "simulated" and source.control.controller == "recorded",
     )

@@ -114,8 +114,7 @@ class Runs:
             window = windows[k]
             lead = next(w.first for w in self.simulation.windows if w.record == window.record)
             part = slice(max(window.first - lead, 0), window.first + window.samples)
-            # What is clipped before it is not compared.
-            runs.append(replace(self.motions[window.record].part(part), clipped=None))
+            runs.append(self.motions[window.record].part(part))
         return replace(self, motions=tuple(runs))
 
     def part(self, number: int) -> Runs:

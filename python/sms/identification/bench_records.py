@@ -168,7 +168,7 @@ def whole_windows(runs: Runs) -> NDArray[np.bool_]:
 def _clipped(run: Run) -> NDArray[np.bool_]:
     """(n,): samples at which a reading is at the end of its range, or repeats to the digit at its extreme."""
     by_signal = [stuck_at_extremes(run.signals[n]) for n in _CLIPPING if n in run.signals]
-    return np.asarray(np.any([*by_signal, *([] if run.clipped is None else [run.clipped])], axis=0))
+    return np.asarray(np.any([*by_signal, *run.clipped.values()], axis=0))
 
 
 def _supply(rig: Rig, runs: Sequence[Run]) -> list[str]:

@@ -99,7 +99,7 @@ def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
             int(np.argmax(where)),
             name,
             f"sits at the end of its range for {100 * np.mean(where):.2g} % of the record",
-            "the windows with these samples are left out; if it is no end, look at its resolution and noise"
+            "these samples are compared with nothing; if it is no end, look at its resolution and noise"
             if enough
             else "the sensor or its amplifier is saturated; choose another range",
         )

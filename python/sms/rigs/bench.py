@@ -39,15 +39,16 @@ def record_of(
     run: Run, channels: Sequence[str], *, command: Array, setpoint: Array = NOTHING
 ) -> _core.BenchRecord:
     """One run as the core takes it; command and setpoint (n,), or empty."""
-    s = run.signals
     return _core.BenchRecord(
         step=run.step,
         command=command,
         setpoint=setpoint,
-        extension=s["extension"],
-        pressure_lower=s["chamber_pressure_lower"],
-        pressure_upper=s["chamber_pressure_upper"],
-        supply_pressure=s["supply_pressure"] if "supply_pressure" in channels else NOTHING,
+        extension=run.signals["extension"],
+        pressure_lower=run.compared("chamber_pressure_lower"),
+        pressure_upper=run.compared("chamber_pressure_upper"),
+        supply_pressure=run.compared("supply_pressure")
+        if "supply_pressure" in channels
+        else NOTHING,
         conditions=run.conditions,
         hold=run.hold,
     )

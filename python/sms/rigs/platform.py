@@ -52,6 +52,11 @@ def columns(run: Run, signal: str) -> Array:
     return np.column_stack([run.signals[name] for name in of_legs(signal)])
 
 
+def compared(run: Run, signal: str) -> Array:
+    """The same, NaN where a reading is clipped."""
+    return np.column_stack([run.compared(name) for name in of_legs(signal)])
+
+
 def record_of(
     run: Run, channels: Sequence[str], *, command: Array, setpoint: Array = NOT_OF_LEGS
 ) -> _core.PlatformRecord:
@@ -62,11 +67,11 @@ def record_of(
         command=command,
         setpoint=setpoint,
         extension=columns(run, "extension"),
-        pressure_lower=columns(run, "chamber_pressure_lower"),
-        pressure_upper=columns(run, "chamber_pressure_upper"),
-        supply_pressure=run.signals["supply_pressure"] if has_supply else NOTHING,
-        roll=run.signals["roll"] if both else NOTHING,
-        pitch=run.signals["pitch"] if both else NOTHING,
+        pressure_lower=compared(run, "chamber_pressure_lower"),
+        pressure_upper=compared(run, "chamber_pressure_upper"),
+        supply_pressure=run.compared("supply_pressure") if has_supply else NOTHING,
+        roll=run.compared("roll") if both else NOTHING,
+        pitch=run.compared("pitch") if both else NOTHING,
         conditions=run.conditions,
         hold=run.hold,
     )

@@ -61,12 +61,12 @@ def valve_of(rig: Rig, run: Run) -> str:
 
 def _record(rig: Rig, run: Run, channels: Sequence[str]) -> _core.TankPlantRecord:
     def measured(signal: str) -> Array:
-        return run.signals[signal] if signal in channels else np.empty(0)
+        return run.compared(signal) if signal in channels else np.empty(0)
 
     return _core.TankPlantRecord(
         step=run.step,
         command=run.signals["valve_command"],
-        pressure=run.signals["tank_pressure"],
+        pressure=run.compared("tank_pressure"),
         temperature=measured("tank_temperature"),
         supply_pressure=measured("supply_pressure"),
         conditions=run.conditions,

@@ -203,9 +203,10 @@ def _averaging(run: Run) -> sparse.csr_matrix:
     mean = sparse.csr_matrix(
         (np.full(count * each, 1.0 / each), (rows, columns)), shape=(count, len(run.time))
     )
-    if run.clipped is None:
+    if not run.clipped:
         return mean
-    spoilt = np.convolve(run.clipped, np.ones(_width(run.step)), "same") > 0.5
+    clipped = np.any(list(run.clipped.values()), axis=0)
+    spoilt = np.convolve(clipped, np.ones(_width(run.step)), "same") > 0.5
     return mean[np.flatnonzero(mean @ spoilt == 0.0)]
 
 
