@@ -98,14 +98,13 @@ def _by_likelihood(
 
 
 def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
-    """Whether the validation records change with the trial by less than is worth a word, and are no worse for it. With
-    records of the healthy machine the likelihood has counted them already: no worse is enough.
+    """Whether the validation records change with the trial by less than is worth a word, and are not surely worse for
+    it. With records of the healthy machine the likelihood has weighed them already: not surely worse is enough.
     """
-    if data.healthy is not None:
-        return trial.gain > 0.0
+    if trial.gain_interval[1] <= 0.0 or data.healthy is not None:
+        return trial.gain_interval[1] > 0.0
     honest = data.validate.kind.honest[0]
-    changed_by = cross_validation.change_on_validation(trial.fitted, current, data)
-    return trial.gain_interval[1] >= 0.0 and changed_by < honest
+    return cross_validation.change_on_validation(trial.fitted, current, data) < honest
 
 
 def _untenable(trial: Trial, data: Data) -> str:
