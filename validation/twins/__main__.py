@@ -21,6 +21,7 @@ def _draw(options: argparse.Namespace) -> None:
         options.truth,
         options.effect,
         options.multiple,
+        options.imperfection,
     )
 
 
@@ -53,6 +54,13 @@ def main(arguments: list[str] | None = None) -> int:
         "--effect", action="append", help="id, or id:target; twice for two; drawn when left out"
     )
     drawing.add_argument("--multiple", type=float, default=3.0, help="of the detection limit")
+    drawing.add_argument(
+        "--imperfection",
+        type=float,
+        default=0.0,
+        metavar="PERCENT",
+        help="by which the machine is off from what a rig file can declare",
+    )
     drawing.set_defaults(run=_draw)
     limiting = commands.add_parser("limits", help="compute the table of detection limits")
     limiting.add_argument("rig", choices=sorted(RIGS))

@@ -159,16 +159,24 @@ def supply_now(p: Machine, time: float) -> float:
 def edges(
     p: Machine, time: float, map_: Array, seat: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Opening, V; charge C, b, m; vent C, m, with the spool's seat at `seat` V."""
+    """Opening, V; charge C, b, m; vent C, m, with the spool's seat at `seat` V.
+
+    map_: (2, GRID_POINTS, 5), above and below the centre.
+    """
     wide = opening(p, seat)
+    side = 1 if wide < 0.0 else 0
     place = min(abs(wide), GRID_STEP * (GRID_POINTS - 1.001)) / GRID_STEP
     row = int(place)
     part = place - row
-    charge = p.mass_flow_gain * (map_[row, 0] + part * (map_[row + 1, 0] - map_[row, 0]))
-    charge_b = map_[row, 1] + part * (map_[row + 1, 1] - map_[row, 1])
-    charge_m = map_[row, 2] + part * (map_[row + 1, 2] - map_[row, 2])
-    vent = p.mass_flow_gain * (map_[row, 3] + part * (map_[row + 1, 3] - map_[row, 3]))
-    vent_m = map_[row, 4] + part * (map_[row + 1, 4] - map_[row, 4])
+    charge = p.mass_flow_gain * (
+        map_[side, row, 0] + part * (map_[side, row + 1, 0] - map_[side, row, 0])
+    )
+    charge_b = map_[side, row, 1] + part * (map_[side, row + 1, 1] - map_[side, row, 1])
+    charge_m = map_[side, row, 2] + part * (map_[side, row + 1, 2] - map_[side, row, 2])
+    vent = p.mass_flow_gain * (
+        map_[side, row, 3] + part * (map_[side, row + 1, 3] - map_[side, row, 3])
+    )
+    vent_m = map_[side, row, 4] + part * (map_[side, row + 1, 4] - map_[side, row, 4])
     vent *= exhaust_share(p, time)
     if p.heat_transfer_coefficient > 0.0:
         vent /= p.kappa  # the map was measured on a tank that was taken for isothermal

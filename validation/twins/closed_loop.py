@@ -16,7 +16,7 @@ import numpy as np
 
 from validation.reference.compiled import compiled
 from validation.twins import bench, effects
-from validation.twins.air import Array, valve_map
+from validation.twins.air import Array
 from validation.twins.bench_rig import BenchRig
 from validation.twins.closed_platform import ClosedPlatformRig
 from validation.twins.controller import (
@@ -33,6 +33,7 @@ from validation.twins.draw import Hidden, Trial, draw_runs, write_trial
 from validation.twins.effects import Effect
 from validation.twins.instruments import CHANNELS
 from validation.twins.machine import Machine
+from validation.twins.maps import Maps, exact
 from validation.twins.measured import Measured, VirtualRig
 from validation.twins.truth import Truth
 
@@ -40,7 +41,7 @@ from validation.twins.truth import Truth
 @compiled
 def run(
     p: Machine,
-    map_: Array,
+    maps: Maps,
     y: Array,
     setpoint: Array,
     noise: Array,
@@ -70,10 +71,10 @@ def run(
             sent = sample_at_valve(k, i * dt, late, period)
             u = commands[sent] if sent >= 0 else 5.0
             now = k * period + i * dt
-            bench.derivative(p, now, map_, y, 0.0, u, k1)
-            bench.derivative(p, now + 0.5 * dt, map_, y + 0.5 * dt * k1, 0.0, u, k2)
-            bench.derivative(p, now + 0.5 * dt, map_, y + 0.5 * dt * k2, 0.0, u, k3)
-            bench.derivative(p, now + dt, map_, y + dt * k3, 0.0, u, k4)
+            bench.derivative(p, now, maps, y, 0.0, u, k1)
+            bench.derivative(p, now + 0.5 * dt, maps, y + 0.5 * dt * k1, 0.0, u, k2)
+            bench.derivative(p, now + 0.5 * dt, maps, y + 0.5 * dt * k2, 0.0, u, k3)
+            bench.derivative(p, now + dt, maps, y + dt * k3, 0.0, u, k4)
             y += dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
             if (i + 1) % every == 0:
                 states[k * bench.FINE + (i + 1) // every] = y
@@ -85,6 +86,7 @@ class ClosedBenchRig(BenchRig):
     title = "Virtual pneumatic actuator in its position loop"
 
     def __init__(self, controller: Controller) -> None:
+        super().__init__()
         self.controller = controller
 
     def measure(
@@ -96,7 +98,7 @@ class ClosedBenchRig(BenchRig):
         states = np.zeros(((count - 1) * bench.FINE + 1, bench.STATES))
         run(
             truth.machine,
-            valve_map(),
+            exact(),
             bench.balanced(truth.machine, plan.start),
             plan.setpoint,
             reading_noise["extension"],

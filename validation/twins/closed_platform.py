@@ -9,10 +9,11 @@ import numpy as np
 from validation.reference.compiled import compiled
 from validation.reference.plants.mechanism import Mechanism
 from validation.twins import platform
-from validation.twins.air import Array, valve_map
+from validation.twins.air import Array
 from validation.twins.controller import Controller, answered, delay, read, sample_at_valve
 from validation.twins.instruments import CHANNELS
 from validation.twins.machine import Body, Machine
+from validation.twins.maps import Maps
 from validation.twins.measured import Measured
 from validation.twins.platform_rig import LEGS, PlatformRig
 from validation.twins.truth import Truth
@@ -23,7 +24,7 @@ def run(
     p: Machine,
     body: Body,
     m: Mechanism,
-    map_: Array,
+    maps: Maps,
     y: Array,
     setpoint: Array,
     noise: Array,
@@ -47,7 +48,7 @@ def run(
     work = (np.zeros((3, 3)), np.zeros(3), np.zeros((3, 3)), np.zeros(3), np.zeros(3))
     weight = np.array([0.0, 0.5, 0.5, 1.0])
     u[:] = 5.0
-    platform.derivative(p, body, m, 0.0, map_, y, play, u, pose, work, reading, k[0])
+    platform.derivative(p, body, m, 0.0, maps, y, play, u, pose, work, reading, k[0])
     memory = np.zeros((3, 3))
     memory[:, 0] = setpoint[0] - reading[0:3]
     states[0], readings[0] = y, reading
@@ -66,13 +67,13 @@ def run(
                 between[:] = y + weight[stage] * dt * k[max(stage - 1, 0)]
                 at = now + weight[stage] * dt
                 platform.derivative(
-                    p, body, m, at, map_, between, play, u, pose, work, spare, k[stage]
+                    p, body, m, at, maps, between, play, u, pose, work, spare, k[stage]
                 )
             y += dt / 6.0 * (k[0] + 2.0 * k[1] + 2.0 * k[2] + k[3])
             if (step + 1) % every == 0:
                 row = sample * platform.FINE + (step + 1) // every
                 platform.derivative(
-                    p, body, m, now + dt, map_, y, play, u, pose, work, reading, k[0]
+                    p, body, m, now + dt, maps, y, play, u, pose, work, reading, k[0]
                 )
                 states[row], readings[row] = y, reading
 
@@ -84,6 +85,7 @@ class ClosedPlatformRig(PlatformRig):
     duration = 4.0
 
     def __init__(self, controller: Controller) -> None:
+        super().__init__()
         self.controller = controller
 
     def measure(
@@ -97,7 +99,7 @@ class ClosedPlatformRig(PlatformRig):
             truth.machine,
             truth.body,
             platform.mechanism(truth.body),
-            valve_map(),
+            platform.exact_maps(),
             platform.at_rest(truth.machine, truth.body, plan.pose),
             plan.setpoint,
             np.column_stack([reading_noise[f"extension_{i}"] for i in LEGS]),

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +20,11 @@ from validation.twins.air import Array
 from validation.twins.bench_rig import BenchRig
 from validation.twins.declared import as_declared, drawn, half_width
 from validation.twins.effects import Effect
+from validation.twins.imperfection import LARGEST, bowed, draw_imperfection
 from validation.twins.instruments import CHANNELS, Channel, channel_of, converted, noise
-from validation.twins.measured import VirtualRig, sample_times
+from validation.twins.measured import VirtualRig, every, sample_times
 from validation.twins.platform_rig import PlatformRig
+from validation.twins.rig_file import rig_file, write_record
 from validation.twins.tank_rig import TankRig
 from validation.twins.truth import Truth
 
@@ -31,6 +33,12 @@ RIGS: Mapping[str, VirtualRig] = {
     "platform": PlatformRig(),
     "tank": TankRig(),
 }
+CONTROLLED: Mapping[str, Callable[[float, float], VirtualRig]] = {
+    "bench": BenchRig.controlled,
+    "platform": PlatformRig.controlled,
+    "tank": TankRig.controlled,
+}
+"""The same with a controller that holds its command, by the step of the log and its period."""
 PAIRS: Mapping[str, Sequence[tuple[str, str]]] = {
     "bench": (("multisine", "holds"), ("steps", "triangle"), ("chirp", "ends")),
     "tank": (("strokes", "bursts"), ("bursts", "strokes")),
@@ -144,6 +152,11 @@ class Trial:
     loudness: float = 1.0
     multiple: float = 0.0
 
+    @property
+    def channels(self) -> dict[str, Channel]:
+        """The instruments with this trial's noise."""
+        return {name: channel.louder(self.loudness) for name, channel in CHANNELS.items()}
+
 
 def draw(
     kind: str,
@@ -152,12 +165,14 @@ def draw(
     truth_path: Path | str,
     effect: str | Sequence[str] | None = None,
     multiple: float = 3.0,
-) -> None:
+    imperfection: float = 0.0,
+) -> Trial:
     """Write records, `rig.toml` and `truth.sha256` to `out`, the truth to `truth_path`.
 
     `effect` is an id, or `id:target`, or several of them; by default one is drawn. Its size is
     `multiple` times its detection limit. The same seed gives the same rig and the same noise
-    whatever the effect. Raises `ValueError` for an unknown rig or effect, a size that is not
+    whatever the effect. `imperfection`: percent by which the machine is off from what can be declared
+    (imperfection.py). Raises `ValueError` for an unknown rig or effect, a size that is not
     positive or a truth inside `out`.
     """
     if kind not in RIGS:
@@ -166,13 +181,23 @@ def draw(
         raise ValueError(f"multiple is {multiple}; it must be a positive number")
     if seed < 0:
         raise ValueError(f"seed is {seed}; it must not be negative")
-    write_trial(draw_trial(kind, seed, effect, multiple), out, truth_path)
+    if not 0.0 <= imperfection <= LARGEST:
+        raise ValueError(f"imperfection is {imperfection} %; it must be 0 to {LARGEST:g} %")
+    trial = draw_trial(kind, seed, effect, multiple, imperfection)
+    write_trial(trial, out, truth_path)
+    return trial
 
 
-def draw_trial(kind: str, seed: int, effect: str | Sequence[str] | None, multiple: float) -> Trial:
+def draw_trial(
+    kind: str,
+    seed: int,
+    effect: str | Sequence[str] | None,
+    multiple: float,
+    imperfection: float = 0.0,
+) -> Trial:
     """Rig, runs and what is hidden; see `draw`."""
     rig = RIGS[kind]
-    for_rig, for_effect, for_runs = (np.random.default_rng(s) for s in _seeds(seed)[:3])
+    for_rig, for_effect, for_runs = (np.random.default_rng(s) for s in seeds_of(seed)[:3])
     pair, runs = draw_runs(kind, for_runs)
     loudness = float(for_runs.uniform(0.7, 1.3))
     names = [effect] if effect is None or isinstance(effect, str) else list(effect)
@@ -187,12 +212,20 @@ def draw_trial(kind: str, seed: int, effect: str | Sequence[str] | None, multipl
     truth = drawn(as_declared(Truth(), rig.declared), rig.declared, kept, for_rig)
     for hidden in found:
         truth = hidden.effect.hidden_in(truth, hidden.value)
+    if imperfection > 0.0:
+        stream = seeds_of(seed)[6]
+        off = draw_imperfection(imperfection, rig.axes, rig.signals, rig.log_steps, stream)
+        truth, rig = (
+            replace(truth, imperfection=off),
+            CONTROLLED[kind](off.log_step, off.control_period),
+        )
     return Trial(rig, runs, truth, found, seed, loudness, multiple)
 
 
-def _seeds(seed: int) -> list[np.random.SeedSequence]:
-    """For the rig, the effect, the choice of runs, their noise, the salt, what is declared."""
-    return np.random.SeedSequence(seed).spawn(6)
+def seeds_of(seed: int) -> list[np.random.SeedSequence]:
+    """For the rig, the effect, the choice of runs, their noise, the salt, what is declared, the imperfection, runs that
+    are added later."""
+    return np.random.SeedSequence(seed).spawn(8)
 
 
 def write_trial(trial: Trial, out: Path | str, truth_path: Path | str) -> None:
@@ -200,10 +233,9 @@ def write_trial(trial: Trial, out: Path | str, truth_path: Path | str) -> None:
     out, truth_path = Path(out), Path(truth_path)
     if truth_path.resolve().is_relative_to(out.resolve()):
         raise ValueError(f"the truth ({truth_path}) must lie outside the records' folder ({out})")
-    for_records, for_salt, for_declared = _seeds(trial.seed)[3:]
-    channels = {name: channel.louder(trial.loudness) for name, channel in CHANNELS.items()}
+    for_records, for_salt, for_declared = seeds_of(trial.seed)[3:6]
     records = {
-        run.name: _record(trial.rig, trial.truth, run, channels, child)
+        run.name: _record(trial, run.excited_by, child)
         for run, child in zip(trial.runs, for_records.spawn(len(trial.runs)), strict=True)
     }
     sealed = _sealed(trial, np.random.default_rng(for_salt).bytes(16).hex())
@@ -212,33 +244,39 @@ def write_trial(trial: Trial, out: Path | str, truth_path: Path | str) -> None:
     (out / "truth.sha256").write_text(hashlib.sha256(sealed).hexdigest() + "\n")
     truth_path.write_bytes(sealed)
     for name, columns in records.items():
-        _write(out / f"{name}.csv", columns)
+        write_record(out / f"{name}.csv", columns)
     spread = float(np.random.default_rng(for_declared).uniform(0.85, 1.15))
-    (out / "rig.toml").write_text(_rig_file(trial.rig, trial.runs, channels, spread))
+    (out / "rig.toml").write_text(rig_file(trial.rig, trial.runs, trial.channels, spread))
 
 
-def _record(
-    rig: VirtualRig,
-    truth: Truth,
-    run: Run,
-    channels: Mapping[str, Channel],
-    seed: np.random.SeedSequence,
-) -> dict[str, Array]:
+def _record(trial: Trial, excited_by: str, seed: np.random.SeedSequence) -> dict[str, Array]:
     """The columns of one record, by name without unit."""
     for_plan, for_noise = (np.random.default_rng(s) for s in seed.spawn(2))
-    plan = rig.plan(run.excited_by, for_plan)
-    count = round(rig.duration / rig.sample_step) + 1
+    plan = trial.rig.plan(excited_by, for_plan)
+    return recorded(trial, trial.truth, plan, trial.rig.duration, for_noise)
+
+
+def recorded(
+    trial: Trial, truth: Truth, plan: Any, duration: float, for_noise: np.random.Generator
+) -> dict[str, Array]:
+    """What the logger writes of a run of `duration` seconds: the columns by name without unit."""
+    rig, off, channels = trial.rig, truth.imperfection, trial.channels
+    period, logged = rig.clock.period, every(rig.clock.period, rig.sample_step)
+    count = every(period, duration) + 1
     noises = {
-        signal: noise(channel_of(signal, channels), count, rig.sample_step, for_noise)
+        signal: noise(channel_of(signal, channels), count, period, for_noise)
         for signal in rig.signals
     }
     measured = rig.measure(truth, plan, noises)
-    columns = {"time": sample_times(rig.duration, rig.sample_step)}
+    columns = {"time": sample_times(duration, rig.sample_step)}
     for signal, values in measured.commands.items():
         columns[signal] = converted(channel_of(signal, channels), values)
     columns |= measured.setpoints
     for signal, values in measured.signals.items():
-        columns[signal] = converted(channel_of(signal, channels), values + noises[signal])
+        seen = values if off is None else bowed(signal, values, off.bows[signal])
+        down = off is not None and off.rounds_down
+        noisy = seen + noises[signal][::logged]
+        columns[signal] = converted(channel_of(signal, channels), noisy, down)
     return columns
 
 
@@ -265,11 +303,13 @@ def _sealed(trial: Trial, salt: str) -> bytes:
         "truth": _plain(trial.truth),
         "records": {run.name: asdict(run) for run in trial.runs},
     }
+    if trial.truth.imperfection is not None:
+        content["imperfection"] = trial.truth.imperfection.sealed
     return (json.dumps(content, indent=2) + "\n").encode()
 
 
 def _plain(truth: Truth) -> dict[str, Any]:
-    parts = {name: getattr(truth, name) for name in truth.__dataclass_fields__}
+    parts = {name: getattr(truth, name) for name in ("machine", "body", "errors")}
     errors = {signal: asdict(error) for signal, error in parts.pop("errors").of.items()}
     return {name: part._asdict() for name, part in parts.items()} | {"errors": errors}
 
@@ -281,72 +321,3 @@ def open_truth(truth_path: Path | str, out: Path | str) -> dict[str, Any]:
         raise ValueError(f"{truth_path} is not the truth that was sealed in {out}")
     truth: dict[str, Any] = json.loads(sealed)
     return truth
-
-
-def unit_of_column(name: str) -> str:
-    """SI unit of a record's column."""
-    if name == "time":
-        return "s"
-    if name.startswith("setpoint"):
-        return "m"
-    return channel_of(name).unit
-
-
-_DECIMALS = {"s": 4, "V": 6, "m": 7, "Pa": 1, "K": 4, "rad": 7}
-
-
-def _write(path: Path, columns: Mapping[str, Array]) -> None:
-    units = [unit_of_column(name) for name in columns]
-    np.savetxt(
-        path,
-        np.column_stack(list(columns.values())),
-        fmt=[f"%.{_DECIMALS[unit]}f" for unit in units],
-        delimiter=",",
-        header=",".join(f"{n} [{u}]" for n, u in zip(columns, units, strict=True)),
-        comments="",
-    )
-
-
-def _rig_file(
-    rig: VirtualRig, runs: Sequence[Run], channels: Mapping[str, Channel], spread: float
-) -> str:
-    """What the rig's owner knows; nothing in it depends on the effect."""
-    rows = ["time = " + '"time"']
-    rows += [f'{command} = "{command}"' for command in rig.commands]
-    for signal in rig.signals:
-        channel = channel_of(signal, channels)
-        noise_text = f"{spread * channel.deviation:.3g} {channel.unit}"
-        step = f"{channel.step:.4g} {channel.unit}"
-        rows.append(
-            f'{signal} = {{ column = "{signal}", noise = "{noise_text}", resolution = "{step}" }}'
-        )
-    parameters = [
-        f"{d.parameter} = {{ value = {_quantity(d.value, d.unit)}, "
-        f"uncertainty = {_quantity(d.half_width, d.unit)} }}"
-        for d in rig.declared
-    ]
-    records = [
-        f'[[records]]\nfile = "{run.name}.csv"\nrole = "{run.role}"\nname = "{run.name}"\n'
-        for run in runs
-    ]
-    return "\n".join(
-        [
-            "[rig]",
-            f'kind = "{rig.kind}"',
-            f'title = "{rig.title}"',
-            'notes = "Made by an independent simulator. The command runs straight from one sample'
-            ' to the next."',
-            "",
-            "[signals]",
-            *rows,
-            "",
-            "[parameters]",
-            *parameters,
-            "",
-            *records,
-        ]
-    )
-
-
-def _quantity(value: float, unit: str) -> str:
-    return f"{value:g}" if unit == "1" else f'"{value:g} {unit}"'

@@ -52,9 +52,28 @@ CHANNELS: Mapping[str, Channel] = {
 450 mm and 10 bar; the pressure noise is the source's (262 Pa, section 6.1)."""
 
 
+RANGES: Mapping[str, tuple[float, float]] = {
+    "extension": (-0.025, 0.425),
+    "chamber_pressure_lower": (0.0, 1e6),
+    "chamber_pressure_upper": (0.0, 1e6),
+    "supply_pressure": (0.0, 1e6),
+    "tank_pressure": (0.0, 1e6),
+    "tank_temperature": (273.15, 373.15),
+    "roll": (-0.52, 0.52),
+    "pitch": (-0.52, 0.52),
+}
+"""What each kind of sensor reads at either end of its range: the converters' above, a transmitter of 0 to 100 degrees,
+an inclinometer of 30 degrees to either side."""
+
+
 def channel_of(signal: str, channels: Mapping[str, Channel] = CHANNELS) -> Channel:
     """The channel of "extension", "extension_2", ..."""
-    return channels[signal if signal in channels else signal.rpartition("_")[0]]
+    return channels[range_of(signal)]
+
+
+def range_of(signal: str) -> str:
+    """A signal without its number: "extension" of "extension_2"."""
+    return signal if signal in CHANNELS else signal.rpartition("_")[0]
 
 
 @dataclass(frozen=True)
@@ -103,9 +122,11 @@ def noise(channel: Channel, count: int, step: float, rng: np.random.Generator) -
     return channel.white * rng.standard_normal(count) + channel.coloured * coloured
 
 
-def converted(channel: Channel, signal: Array) -> Array:
-    """Rounded to the converter's step."""
-    return np.asarray(np.round(signal / channel.step) * channel.step, dtype=np.float64)
+def converted(channel: Channel, signal: Array, rounds_down: bool = False) -> Array:
+    """Rounded to the converter's nearest step, or down."""
+    steps = signal / channel.step
+    whole = np.floor(steps) if rounds_down else np.round(steps)
+    return np.asarray(whole * channel.step, dtype=np.float64)
 
 
 def played(signal: Array, width: float) -> Array:

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from validation.twins.air import Array
+from validation.twins.clock import Clock
 from validation.twins.declared import Declared
 from validation.twins.truth import Truth
 
@@ -47,8 +48,20 @@ class VirtualRig(Protocol):
         """What drives it."""
 
     @property
+    def axes(self) -> int:
+        """Valves, each with its cylinder."""
+
+    @property
+    def clock(self) -> Clock:
+        """How a run is cut into commands and steps."""
+
+    @property
     def sample_step(self) -> float:
-        """s."""
+        """s between two rows of a record."""
+
+    @property
+    def log_steps(self) -> tuple[float, ...]:
+        """s, that the logger of a controlled rig may have."""
 
     @property
     def duration(self) -> float:
@@ -65,13 +78,21 @@ class VirtualRig(Protocol):
     def plan(self, excited_by: str, rng: np.random.Generator) -> Any:
         """A run."""
 
+    def following(self, setpoint: Array, gains: Array) -> Any:
+        """A run along a given set-point, one a period of the clock, by a controller with these numbers."""
+
     def measure(self, truth: Truth, plan: Any, reading_noise: Mapping[str, Array]) -> Measured:
-        """One run without noise; what noise a position loop sees is given."""
+        """One run without noise; what noise a position loop sees is given, one a period of the clock."""
 
     def window(
         self, truth: Truth, commands: Mapping[str, Array], start: Array, time: float
     ) -> Mapping[str, Array]:
         """The signals of a stretch from a given state under recorded commands."""
+
+
+def every(step: float, of: float) -> int:
+    """How many steps make one of `of` seconds."""
+    return round(of / step)
 
 
 def sample_times(duration: float, step: float) -> Array:

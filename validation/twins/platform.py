@@ -7,8 +7,8 @@ record sample to the next.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, field
+from functools import cache, lru_cache
 from math import pi
 from types import SimpleNamespace
 from typing import Any, cast
@@ -30,14 +30,18 @@ from validation.reference.plants.mechanism import (
     pose_rates,
     times,
 )
-from validation.twins.air import Array, chamber_rates, valve_map
+from validation.twins.air import Array, chamber_rates
+from validation.twins.clock import Clock
+from validation.twins.controller import answered
 from validation.twins.machine import Body, Machine
+from validation.twins.maps import Maps, exact, of_axes
 from validation.twins.published import MECHANISM
 from validation.twins.seal import end_force, friction, odd_force, pressure_force
 
 SAMPLE_STEP = 5.0e-3
 STEPS = 10
 FINE = 5
+STRAIGHT = Clock(SAMPLE_STEP, STEPS, FINE, held=False)
 AXIS = 9
 """States of an axis: p_lower, p_upper, T_lower, T_upper, reservoir | spool, rate | bristle, film."""
 STATES = 6 + 3 * AXIS
@@ -71,6 +75,8 @@ class Plan:
     feedforward: Array  # V around the centre
     setpoint: Array  # m
     pose: Array  # roll, pitch, height, where it starts
+    gains: Array = field(default_factory=lambda: np.empty(0))
+    """Of controllers that follow the set-points instead; see bench.Plan."""
 
 
 @dataclass(frozen=True)
@@ -82,13 +88,19 @@ class Motion:
     command: Array
 
 
+@cache
+def exact_maps() -> Maps:
+    """Of three legs."""
+    return of_axes([exact()] * 3)
+
+
 @compiled
 def derivative(
     p: Machine,
     body: Body,
     m: Mechanism,
     time: float,
-    map_: Array,
+    maps: Maps,
     y: Array,
     play: Array,
     commands: Array,
@@ -105,9 +117,9 @@ def derivative(
     for i in range(3):
         v = slope[i, 0] * y[3] + slope[i, 1] * y[4] + slope[i, 2] * y[5]
         own, rates = y[6 + AXIS * i : 6 + AXIS * (i + 1)], dy[6 + AXIS * i : 6 + AXIS * (i + 1)]
-        chamber_rates(p, time, map_, own[0:5], own[5] + play[i], x[i], v, rates[0:5])
+        chamber_rates(p, time, maps.valve[i], own[0:5], own[5] + play[i], x[i], v, rates[0:5])
         force = pressure_force(p, own[0], own[1]) + end_force(p, x[i], v) + odd_force(p, x[i])
-        force -= friction(p, time, x[i], v, own[0], own[1], own[7:9], rates[7:9])
+        force -= friction(p, maps.friction[i], time, x[i], v, own[0], own[1], own[7:9], rates[7:9])
         rates[5] = own[6]
         rates[6] = omega * (omega * (commands[i] - own[5]) - 2.0 * p.valve_damping_ratio * own[6])
         reading[i], reading[3 + i], reading[6 + i] = x[i], v, force
@@ -149,6 +161,9 @@ def steer(
     feedforward: Array,
     setpoint: Array,
     gain: float,
+    gains: Array,
+    memory: Array,
+    period: float,
     extension: Array,
     reading_error: Array,
     sensor_gain: Array,
@@ -157,6 +172,8 @@ def steer(
     for i in range(3):
         seen = (1.0 + sensor_gain[i]) * extension[i] + reading_error[sample, i]
         wanted = 5.0 + feedforward[sample + 1, i] + gain * (setpoint[sample, i] - seen)
+        if gains.size > 0:
+            wanted = answered(gains, period, memory[i], setpoint[sample, i] - seen)
         commands[sample + 1, i] = min(10.0, max(0.0, wanted))
 
 
@@ -170,15 +187,29 @@ def drag_seats(p: Machine, y: Array, seat: Array, play: Array) -> None:
 
 
 @compiled
+def drive(commands: Array, clock: Clock, t: float, late: float, u: Array) -> None:
+    """What is at the valves at the beginning, the middle and the end of a step from t on, by legs, into `u`."""
+    dt = clock.period / clock.steps
+    for place in range(3):
+        for i in range(3):
+            if clock.held:
+                u[place, i] = command_held(commands, t + 0.5 * dt - late, i, clock.period)
+            else:
+                u[place, i] = command_at(commands, t + 0.5 * place * dt - late, i, clock.period)
+
+
+@compiled
 def run(
     p: Machine,
     body: Body,
     m: Mechanism,
-    map_: Array,
+    maps: Maps,
+    clock: Clock,
     y: Array,
     feedforward: Array,
     setpoint: Array,
     gain: float,
+    gains: Array,
     reading_error: Array,
     sensor_gain: Array,
     commands: Array,
@@ -186,8 +217,8 @@ def run(
     readings: Array,
     start_time: float,
 ) -> None:
-    """Fills `commands` and, FINE times as long, `states` and `readings`; see bench.run."""
-    dt, every = SAMPLE_STEP / STEPS, STEPS // FINE
+    """Fills `commands` and, clock.fine times as long, `states` and `readings`; see bench.run."""
+    period, dt, every = clock.period, clock.period / clock.steps, clock.steps // clock.fine
     k, between, u = np.zeros((4, STATES)), np.zeros(STATES), np.zeros((3, 3))
     pose, seat, play = np.array([0.04, 0.0, 0.0]), np.zeros(3), np.zeros(3)
     reading, spare = np.zeros(READINGS), np.zeros(READINGS)
@@ -198,18 +229,20 @@ def run(
     for i in range(3):
         seat[i] = y[6 + AXIS * i + 5]
     states[0] = y
-    derivative(p, body, m, start_time, map_, y, play, commands[0], pose, work, reading, k[0])
+    derivative(p, body, m, start_time, maps, y, play, commands[0], pose, work, reading, k[0])
     readings[0] = reading
+    memory = np.zeros((3, 3))
+    for i in range(3):
+        memory[i, 0] = setpoint[0, i] - reading[i]
     for sample in range(commands.shape[0] - 1):
         if gain >= 0.0:
             steer(
-                commands, sample, feedforward, setpoint, gain, reading, reading_error, sensor_gain
-            )
-        for step in range(STEPS):
-            t = sample * SAMPLE_STEP + step * dt
-            for place in range(3):
-                for i in range(3):
-                    u[place, i] = command_at(commands, t + 0.5 * place * dt - late, i)
+                commands, sample, feedforward, setpoint, gain, gains, memory, period, reading,
+                reading_error, sensor_gain,
+            )  # fmt: skip
+        for step in range(clock.steps):
+            t = sample * period + step * dt
+            drive(commands, clock, t, late, u)
             if p.sticky_spool > 0.0:
                 drag_seats(p, y, seat, play)
             for stage in range(4):
@@ -217,20 +250,26 @@ def run(
                     between[j] = y[j] + weight[stage] * dt * k[max(stage - 1, 0), j]
                 now = start_time + t + weight[stage] * dt
                 held = u[of_command[stage]]
-                derivative(p, body, m, now, map_, between, play, held, pose, work, spare, k[stage])
+                derivative(p, body, m, now, maps, between, play, held, pose, work, spare, k[stage])
             for j in range(STATES):
                 y[j] += dt / 6.0 * (k[0, j] + 2.0 * k[1, j] + 2.0 * k[2, j] + k[3, j])
             if (step + 1) % every == 0:
                 now = start_time + t + dt
-                derivative(p, body, m, now, map_, y, play, u[2], pose, work, reading, k[0])
-                states[sample * FINE + (step + 1) // every] = y
-                readings[sample * FINE + (step + 1) // every] = reading
+                derivative(p, body, m, now, maps, y, play, u[2], pose, work, reading, k[0])
+                states[sample * clock.fine + (step + 1) // every] = y
+                readings[sample * clock.fine + (step + 1) // every] = reading
 
 
 @compiled
-def command_at(commands: Array, time: float, axis: int) -> float:
+def command_held(commands: Array, time: float, axis: int, period: float) -> float:
+    """V at a time in s, held from one sample to the next; before the first it is the first."""
+    return float(commands[min(max(int(np.floor(time / period)), 0), commands.shape[0] - 1), axis])
+
+
+@compiled
+def command_at(commands: Array, time: float, axis: int, period: float) -> float:
     """V at a time in s, straight between samples; before the first it is the first."""
-    place = time / SAMPLE_STEP
+    place = time / period
     if place <= 0.0:
         return float(commands[0, axis])
     row = min(int(place), commands.shape[0] - 2)
@@ -291,17 +330,20 @@ def simulate(
     gain: float,
     reading_error: Array,
     sensor_gain: Array,
+    maps: Maps | None = None,
+    clock: Clock = STRAIGHT,
 ) -> Motion:
     """One run from rest in the plan's first pose; see bench.simulate."""
     samples = plan.feedforward.shape[0]
     commands = np.full((samples, 3), 5.0)
     commands[0] += plan.feedforward[0]
-    states = np.zeros(((samples - 1) * FINE + 1, STATES))
+    states = np.zeros(((samples - 1) * clock.fine + 1, STATES))
     readings = np.zeros((states.shape[0], READINGS))
     start = at_rest(p, body, plan.pose)
     run(
-        p, body, mechanism(body), valve_map(), start, plan.feedforward, plan.setpoint, gain,
-        reading_error, sensor_gain, commands, states, readings, 0.0,
+        p, body, mechanism(body), exact_maps() if maps is None else maps, clock, start,
+        plan.feedforward, plan.setpoint, gain, plan.gains, reading_error, sensor_gain,
+        commands, states, readings, 0.0,
     )  # fmt: skip
     return Motion(states, readings, commands)
 
@@ -312,7 +354,7 @@ def follow(p: Machine, body: Body, commands: Array, start: Array, start_time: fl
     readings = np.zeros((states.shape[0], READINGS))
     nothing = np.zeros_like(commands)
     run(
-        p, body, mechanism(body), valve_map(), start.copy(), nothing, nothing, -1.0,
-        nothing, np.zeros(3), commands.copy(), states, readings, start_time,
+        p, body, mechanism(body), exact_maps(), STRAIGHT, start.copy(), nothing, nothing, -1.0,
+        np.empty(0), nothing, np.zeros(3), commands.copy(), states, readings, start_time,
     )  # fmt: skip
     return Motion(states, readings, commands)

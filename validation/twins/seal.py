@@ -18,6 +18,12 @@ from validation.reference.compiled import compiled
 from validation.twins.air import Array
 from validation.twins.machine import Machine
 
+SPEED_STEP = 0.01
+"""m/s, between two points of an error of friction over the speed."""
+TOP_SPEED = 0.5
+"""m/s: beyond it the error stays as it is there."""
+SPEED_POINTS = 101
+
 
 @compiled
 def dry_strength(p: Machine, time: float, x: float, lower: float, upper: float) -> float:
@@ -39,8 +45,17 @@ def sliding_way(p: Machine, v: float) -> float:
 
 
 @compiled
+def relative_error(over_speed: Array, v: float) -> float:
+    """Of the sliding friction at a speed, straight between the points of its curve."""
+    place = min(max((v + TOP_SPEED) / SPEED_STEP, 0.0), SPEED_POINTS - 1.001)
+    row = int(place)
+    return float(over_speed[row] + (place - row) * (over_speed[row + 1] - over_speed[row]))
+
+
+@compiled
 def friction(
     p: Machine,
+    over_speed: Array,
     time: float,
     x: float,
     v: float,
@@ -49,11 +64,16 @@ def friction(
     seal: Array,
     rates: Array,
 ) -> float:
-    """N against extension; `seal` = (bristle deflection, film speed), its rates into `rates`."""
+    """N against extension; `seal` = (bristle deflection, film speed), its rates into `rates`.
+
+    over_speed: relative error of the friction map (maps.py).
+    """
+    share = 1.0 + relative_error(over_speed, v)
     strength = dry_strength(p, time, x, lower, upper)
     speed = abs(v)
     if p.exponential_friction_force != 0.0:
         strength += p.exponential_friction_force * (exp(p.exponential_friction_rate * speed) - 1.0)
+    strength *= share
     way = sliding_way(p, v)
     if p.friction_lag > 0.0:
         film = float(seal[1])
@@ -68,7 +88,7 @@ def friction(
     else:
         rates[0] = 0.0
         dry = strength * way
-    return dry + p.direction_friction * abs(way) + p.viscous_friction * film
+    return dry + p.direction_friction * abs(way) + share * p.viscous_friction * film
 
 
 @compiled

@@ -20,14 +20,16 @@ from validation.twins.air import (
     supply_now,
     tube_volume,
     valve_inflow,
-    valve_map,
 )
-from validation.twins.bench import command_at
+from validation.twins.bench import command_at, command_held
+from validation.twins.clock import Clock
 from validation.twins.machine import Machine
+from validation.twins.maps import Maps, exact
 
 SAMPLE_STEP = 5.0e-3
 STEPS = 10
 FINE = 5
+STRAIGHT = Clock(SAMPLE_STEP, STEPS, FINE, held=False)
 STATES = 5
 """p, T | spool, its rate | reservoir."""
 
@@ -60,18 +62,24 @@ def derivative(
 
 @compiled
 def run(
-    p: Machine, map_: Array, y: Array, commands: Array, states: Array, start_time: float
+    p: Machine,
+    map_: Array,
+    clock: Clock,
+    y: Array,
+    commands: Array,
+    states: Array,
+    start_time: float,
 ) -> None:
-    """Fills `states`, FINE points a sample."""
-    dt, every = SAMPLE_STEP / STEPS, STEPS // FINE
+    """Fills `states`, clock.fine points a sample."""
+    period, dt, every = clock.period, clock.period / clock.steps, clock.steps // clock.fine
     k, between = np.zeros((4, STATES)), np.zeros(STATES)
     weight = np.array([0.0, 0.5, 0.5, 1.0])
     seat, play = y[2], 0.0
     late = p.command_delay + p.tube_length / np.sqrt(p.kappa * p.gas_constant * p.air_temperature)
     states[0] = y
     for sample in range(commands.size - 1):
-        for step in range(STEPS):
-            t = sample * SAMPLE_STEP + step * dt
+        for step in range(clock.steps):
+            t = sample * period + step * dt
             if p.sticky_spool > 0.0:
                 seat = min(max(seat, y[2] - p.sticky_spool), y[2] + p.sticky_spool)
                 play = seat - y[2]
@@ -79,16 +87,27 @@ def run(
                 for j in range(STATES):
                     between[j] = y[j] + weight[stage] * dt * k[max(stage - 1, 0), j]
                 now = t + weight[stage] * dt
-                u = command_at(commands, now - late)
+                if clock.held:
+                    u = command_held(commands, t + 0.5 * dt - late, period)
+                else:
+                    u = command_at(commands, now - late, period)
                 derivative(p, start_time + now, map_, between, play, u, k[stage])
             for j in range(STATES):
                 y[j] += dt / 6.0 * (k[0, j] + 2.0 * k[1, j] + 2.0 * k[2, j] + k[3, j])
             if (step + 1) % every == 0:
-                states[sample * FINE + (step + 1) // every] = y
+                states[sample * clock.fine + (step + 1) // every] = y
 
 
-def follow(p: Machine, commands: Array, start: Array, start_time: float) -> Array:
-    """States under commands in V, one a sample, from a given state, (n, STATES)."""
-    states = np.zeros(((commands.size - 1) * FINE + 1, STATES))
-    run(p, valve_map(), start.copy(), commands, states, start_time)
+def follow(
+    p: Machine,
+    commands: Array,
+    start: Array,
+    start_time: float,
+    maps: Maps | None = None,
+    clock: Clock = STRAIGHT,
+) -> Array:
+    """States under commands in V, one a sample of the clock, from a given state, (n, STATES)."""
+    states = np.zeros(((commands.size - 1) * clock.fine + 1, STATES))
+    valve = (exact() if maps is None else maps).valve
+    run(p, valve, clock, start.copy(), commands, states, start_time)
     return states

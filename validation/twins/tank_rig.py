@@ -8,10 +8,11 @@ import numpy as np
 
 from validation.twins import bench, tank
 from validation.twins.air import Array
+from validation.twins.clock import Clock, holding
 from validation.twins.declared import TANK, Declared
 from validation.twins.effects import SIGNALS
 from validation.twins.instruments import disturbed
-from validation.twins.measured import Measured, sample_times
+from validation.twins.measured import Measured, every, sample_times
 from validation.twins.truth import Truth
 
 RAMP = 0.02
@@ -26,14 +27,24 @@ class TankRig:
     declared: tuple[Declared, ...] = TANK
     signals = SIGNALS["tank"]
     commands = ("valve_command",)
-    sample_step = tank.SAMPLE_STEP
+    axes = 1
+    log_steps = (0.01, 0.005, 0.002)
     duration = 8.0
     window_states = (0,)
     state_steps = (500.0,)
 
+    def __init__(self, clock: Clock = tank.STRAIGHT, sample_step: float = tank.SAMPLE_STEP) -> None:
+        self.clock = clock
+        self.sample_step = sample_step
+
+    @staticmethod
+    def controlled(log_step: float, period: float) -> TankRig:
+        """With a controller that holds its command for `period`, of whose samples one each `log_step` is logged, s."""
+        return TankRig(holding(period, tank.SAMPLE_STEP / tank.STEPS), log_step)
+
     def plan(self, excited_by: str, rng: np.random.Generator) -> Array:
         """Commands in V of a run: "strokes" fills and vents, "bursts" does it bit by bit."""
-        time = sample_times(self.duration, self.sample_step)
+        time = sample_times(self.duration, self.clock.period)
         knots, volts, up = [0.0, 0.3], [5.0, 5.0], True
         while knots[-1] < time[-1]:
             if excited_by == "strokes":
@@ -50,16 +61,20 @@ class TankRig:
             up = not up
         return np.asarray(np.interp(time, knots, volts), dtype=np.float64)
 
+    def following(self, setpoint: Array, gains: Array) -> Array:
+        """A run whose commands are given, V, one a period of the clock; there is no loop."""
+        return np.clip(setpoint, 0.0, 10.0)
+
     def measure(self, truth: Truth, plan: Array, reading_noise: Mapping[str, Array]) -> Measured:
         """One run from ambient pressure; there is no loop."""
         p = truth.machine
         start = np.array([p.ambient_pressure + 5e4, p.air_temperature, 5.0, 0.0, p.supply_pressure])
-        states = tank.follow(p, plan, start, 0.0)
+        states = tank.follow(p, plan, start, 0.0, truth.maps, self.clock)
         return Measured(
-            {"valve_command": plan},
+            {"valve_command": plan[:: every(self.clock.period, self.sample_step)]},
             {},
             self._signals(truth, states),
-            np.ascontiguousarray(states[:: tank.FINE]),
+            np.ascontiguousarray(states[:: every(self.clock.fine_step, self.sample_step)]),
         )
 
     def window(
@@ -73,7 +88,8 @@ class TankRig:
         )
 
     def _signals(self, truth: Truth, states: Array) -> dict[str, Array]:
-        step, p = self.sample_step / tank.FINE, truth.machine
+        step, p = self.clock.fine_step, truth.machine
+        kept = every(step, self.sample_step)
         supply, warmth = states[:, 4], states[:, 1]
         if p.supply_line_resistance <= 0.0:
             supply = bench.heads(p, sample_times(step * (states.shape[0] - 1), step))
@@ -85,6 +101,5 @@ class TankRig:
             "supply_pressure": supply,
         }
         return {
-            name: disturbed(signal, step, tank.FINE, truth.errors[name])
-            for name, signal in fine.items()
+            name: disturbed(signal, step, kept, truth.errors[name]) for name, signal in fine.items()
         }

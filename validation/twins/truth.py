@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from validation.twins.imperfection import Imperfection
 from validation.twins.instruments import Errors
 from validation.twins.machine import Body, Machine
+from validation.twins.maps import Maps
 
 
 @dataclass(frozen=True)
@@ -15,6 +17,13 @@ class Truth:
     machine: Machine = field(default_factory=Machine)
     body: Body = field(default_factory=Body)
     errors: Errors = field(default_factory=Errors)
+    imperfection: Imperfection | None = None
+    """What no rig file can declare; None: a machine whose maps are the source's."""
+
+    @property
+    def maps(self) -> Maps | None:
+        """Maps of its axes; None for the source's."""
+        return None if self.imperfection is None else self.imperfection.maps
 
     def value(self, name: str) -> float:
         """A number by name; "extension.gain" is a sensor's."""
