@@ -30,7 +30,8 @@ from sms.io.rig import load_rig
 from sms.rigs.kinds import KINDS
 from sms.units_display import display_unit, significant
 
-from validation.trials.machines import key_of, runs_rng
+from validation.trials.answers import key_of
+from validation.trials.machines import runs_rng
 from validation.twins import effects, limits
 from validation.twins.draw import PAIRS, draw, draw_runs, pair_key
 

@@ -15,9 +15,12 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from sms.io.errors import InputError
 from sms.io.write import write_text_atomically
 
-from validation.trials.machines import run_tasks, tasks
+from validation.trials.by_level import by_level, follow_up_shares, follow_up_table, level_table
+from validation.trials.machines import Task, done_already, run_tasks, tasks
 from validation.trials.page import trials_html
 from validation.trials.scoring import Outcome, confusion_table, goal_table, goals, load
+from validation.trials.shares import shares_as_dicts
+from validation.twins.imperfection import LARGEST
 
 Count = Annotated[int, typer.Option(min=1, help="How many trials.")]
 Seed = Annotated[int | None, typer.Option(help="Seed of the first; fresh and printed if left out.")]
@@ -31,6 +34,24 @@ Scheduler = Annotated[
     typer.Option(
         metavar="ADDRESS",
         help='An existing Dask scheduler, "tcp://host:port", its workers started in a checkout of the project.',
+    ),
+]
+Imperfection = Annotated[
+    list[float] | None,
+    typer.Option(
+        metavar="PERCENT",
+        help="By how much the machines are off from what a rig file can declare: RMS of smooth errors of the valve's "
+        "flow and of friction, with sensors that bow, a held command, another log rate and rounding drawn along "
+        "(validation/twins/imperfection.py). 0 if left out: exactly what can be declared. Given several times, "
+        "every trial is made at each level, on the same machine with the same thing hidden; COUNT is for each.",
+    ),
+]
+Follow = Annotated[
+    bool,
+    typer.Option(
+        "--follow-proposals",
+        help="Where the answer is a class: make the run that the diagnosis proposes on the hidden machine and diagnose "
+        "again, twice at most; beside it the same with runs drawn from the same menu.",
     ),
 ]
 Json = Annotated[
@@ -56,18 +77,27 @@ def _trials_of(rig: str) -> Callable[..., None]:
         multiple: Multiple = 3.0,
         out: Out = Path("trials"),
         workers: Workers = 2,
+        imperfection: Imperfection = None,
+        follow: Follow = False,
         scheduler: Scheduler = None,
         as_json: Json = None,
     ) -> None:
         first = secrets.randbelow(10**6) if seed is None else seed
+        levels = levels_of(imperfection)
         console = Console()
-        console.print(f"[dim]{rig} --seed {first} --count {count} --multiple {multiple:g}[/dim]")
-        outcomes = _with_progress(rig, first, count, multiple, out, workers, scheduler)
-        console.print(goal_table(outcomes))
+        said = "".join(f" --imperfection {level:g}" for level in levels)
+        console.print(
+            f"[dim]{rig} --seed {first} --count {count} --multiple {multiple:g}{said}[/dim]"
+        )
+        wanted = tasks(rig, first, count, multiple, levels, follow)
+        outcomes = _with_progress(wanted, out, workers, scheduler)
+        print_tables(console, outcomes)
         for o in outcomes:
             if not o.right:
                 hidden = " + ".join(o.hidden) or "nothing"
-                console.print(f"[dim]seed {o.seed}[/dim] hidden {hidden}, said {o.said}")
+                console.print(
+                    f"[dim]seed {o.seed}, {o.imperfection:g} %[/dim] hidden {hidden}, said {o.said}"
+                )
         page = out / "trials.html"
         write_text_atomically(page, trials_html(rig, first, multiple, outcomes))
         if as_json is not None:
@@ -83,16 +113,20 @@ def _trials_of(rig: str) -> Callable[..., None]:
     return trials
 
 
+def levels_of(given: Sequence[float] | None) -> list[float]:
+    """The levels that were asked for, in percent, each once. InputError for one that no machine has."""
+    for level in given or ():
+        if not 0.0 <= level <= LARGEST:
+            raise InputError(
+                f"--imperfection {level:g}: a machine is off by 0 to {LARGEST:g} percent; give a level within that"
+            )
+    return list(dict.fromkeys(given or (0.0,)))
+
+
 def _with_progress(
-    rig: str,
-    first: int,
-    count: int,
-    multiple: float,
-    out: Path,
-    workers: int,
-    scheduler: str | None,
+    wanted: Sequence[Task], out: Path, workers: int, scheduler: str | None
 ) -> list[Outcome]:
-    wanted, file = tasks(rig, first, count, multiple), out / "trials.jsonl"
+    file = out / "trials.jsonl"
     columns = (
         TextColumn("hiding and finding"),
         BarColumn(),
@@ -100,16 +134,16 @@ def _with_progress(
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=count)
-        have = {(o.kind, o.seed, o.sort, o.multiple) for o in load(file)}
-        progress.advance(task, sum((t.kind, t.seed, t.sort, t.multiple) in have for t in wanted))
+        task = progress.add_task("", total=len(wanted))
+        have = done_already(file)
+        progress.advance(task, sum(t.done(have) for t in wanted))
         return run_tasks(wanted, file, workers, scheduler, lambda outcome: progress.advance(task))
 
 
 def score(
     files: Annotated[list[Path], typer.Argument(help="Outcomes, as a trial writes them.")],
 ) -> None:
-    """Confusion matrix and goals of outcomes (JSON lines)."""
+    """Confusion matrix and goals of outcomes (JSON lines), by level of imperfection where there is any."""
     outcomes = [outcome for path in files for outcome in load(path)]
     if not outcomes:
         raise InputError("there is no outcome in these files")
@@ -118,15 +152,27 @@ def score(
         own = [outcome for outcome in outcomes if outcome.kind == kind]
         console.print(f"[bold]{kind}[/bold], {len(own)} trials")
         console.print(confusion_table(own))
-        console.print(goal_table(own))
+        print_tables(console, own)
+
+
+def print_tables(console: Console, outcomes: Sequence[Outcome]) -> None:
+    """The goals; by level of imperfection where machines had one; what became of the proposals where they were made."""
+    if any(o.imperfection for o in outcomes):
+        console.print(level_table(outcomes))
+    else:
+        console.print(goal_table(outcomes))
+    if any(o.follow_ups for o in outcomes):
+        console.print(follow_up_table(outcomes))
 
 
 def as_dict(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Goals and outcomes for programs."""
+    """Goals, shares and outcomes for programs."""
     return {
         "goals": [
             {"goal": g.what, "count": g.count, "of": g.of, "wanted": g.wanted}
             for g in goals(outcomes)
         ],
+        "by_level": {level: shares_as_dicts(s) for level, s in by_level(outcomes).items()},
+        "proposals": {arm: shares_as_dicts(s) for arm, s in follow_up_shares(outcomes).items()},
         "outcomes": [asdict(o) for o in outcomes],
     }

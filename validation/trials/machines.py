@@ -10,10 +10,9 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -23,16 +22,15 @@ import numpy as np
 from sms.cluster import call_from, client_of
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
 from sms.diagnosis.adequacy.subset_estimates import found_value
-from sms.diagnosis.effects.catalogue import Effect, effects_of
+from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import fit, fit_with_discrepancy
-from sms.diagnosis.pipeline import read_and_check
-from sms.diagnosis.preparation import make_data
-from sms.diagnosis.simulated import Case, investigate
-from sms.io.rig import load_rig
+from sms.diagnosis.simulated import Case
 
-from validation.trials.scoring import Outcome, confusion, goals, load
+from validation.trials.answers import Answered, answered, key_of
+from validation.trials.follow_up import followed
+from validation.trials.scoring import Key, Outcome, confusion, goals, load, outcome_from
 from validation.twins import effects
-from validation.twins.draw import draw, draw_runs, drawable, open_truth
+from validation.twins.draw import Trial, draw, draw_runs, drawable, open_truth
 
 __all__ = [
     "Outcome",
@@ -54,9 +52,23 @@ class Task:
     seed: int
     sort: str
     multiple: float
+    imperfection: float = 0.0
+    """Percent by which the machine is off from what can be declared."""
+    follow: bool = False
+    """Whether the run that an ambiguous answer proposes is made (follow_up.py)."""
+
+    @property
+    def key(self) -> Key:
+        """What tells its outcome from others."""
+        return self.kind, self.seed, self.sort, self.multiple, self.imperfection
+
+    def done(self, have: Mapping[Key, Outcome]) -> bool:
+        """Whether its outcome is there, with all that is asked for."""
+        found = have.get(self.key)
+        return found is not None and not (self.follow and found.follow_ups is None)
 
 
-def hide(task: Task, out: Path, truth: Path) -> None:
+def hide(task: Task, out: Path, truth: Path) -> Trial:
     """Draw the records of a task."""
     rng = np.random.default_rng([task.seed, 11])
     if task.sort == "catalogue":
@@ -73,7 +85,7 @@ def hide(task: Task, out: Path, truth: Path) -> None:
         chosen = outside[int(rng.integers(len(outside)))]
     else:
         chosen = "none"
-    draw(task.kind, task.seed, out, truth, chosen, task.multiple)
+    return draw(task.kind, task.seed, out, truth, chosen, task.multiple, task.imperfection)
 
 
 def runs_rng(seed: int) -> np.random.Generator:
@@ -85,43 +97,19 @@ def run_task(task: Task) -> Outcome:
     """Hide, diagnose, then open the truth."""
     with tempfile.TemporaryDirectory() as folder:
         records, sealed = Path(folder) / "records", Path(folder) / "sealed" / "truth.json"
-        hide(task, records, sealed)
+        trial = hide(task, records, sealed)
         answer = answered(records, task.seed)
-        return outcome_of(task, answer, open_truth(sealed, records))
+        outcome = outcome_of(task, answer, open_truth(sealed, records))
+        return (
+            replace(outcome, follow_ups=followed(trial, records, answer))
+            if task.follow
+            else outcome
+        )
 
 
 def fields_of(**task: Any) -> dict[str, Any]:
     """The outcome of a task, both as their fields: what travels to a worker and back."""
     return asdict(run_task(Task(**task)))
-
-
-@dataclass(frozen=True)
-class Answered:
-    """A diagnosis of a folder of records."""
-
-    case: Case
-    block: str
-    """The equation that takes most, for the verdict unknown."""
-    seconds: float
-    """Of processor time."""
-
-
-def answered(records: Path, seed: int) -> Answered:
-    """Diagnose the records of a folder, on one thread."""
-    os.environ.setdefault("SMS_THREADS", "1")
-    begin = time.process_time()
-    rig = load_rig(records / "rig.toml")
-    read, _ = read_and_check(rig)
-    data, rng = make_data(rig, read), np.random.default_rng(seed)
-    case = investigate(data, effects_of(rig), rng, lambda text, done: None)
-    unknown = case.verdict == "unknown"
-    block = case.where(np.random.default_rng(seed)).equation if unknown else ""
-    return Answered(case, block, time.process_time() - begin)
-
-
-def key_of(effect: Effect) -> str:
-    """An effect's name in the words of the generator: "sensor_gain:extension"."""
-    return effect.key.replace(" of ", ":")
 
 
 def outcome_of(task: Task, answer: Answered, truth: dict[str, Any]) -> Outcome:
@@ -136,12 +124,13 @@ def outcome_of(task: Task, answer: Answered, truth: dict[str, Any]) -> Outcome:
         hidden,
         [float(e["value"]) for e in truth["effects"]],
         case.verdict,
-        [[key_of(m.effect) for m in members] for members in case.outcome.groups],
+        answer.named,
         _estimates(case, truth["effects"]),
         answer.block,
         taken(case, case.after),
         answer.seconds,
         achievable(case, hidden) if task.sort in ("catalogue", "pair") else None,
+        task.imperfection,
     )
 
 
@@ -203,8 +192,15 @@ def achievable(case: Case, hidden: Sequence[str]) -> float | None:
 # ---- many ------------------------------------------------------------
 
 
-def tasks(kind: str, first: int, count: int, multiple: float) -> list[Task]:
-    """Half of the catalogue, a fifth each healthy and from outside it, a tenth pairs."""
+def tasks(
+    kind: str,
+    first: int,
+    count: int,
+    multiple: float,
+    levels: Sequence[float] = (0.0,),
+    follow: bool = False,
+) -> list[Task]:
+    """Half of the catalogue, a fifth each healthy and from outside it, a tenth pairs; the same at each level."""
     pattern = (
         "catalogue",
         "healthy",
@@ -217,12 +213,16 @@ def tasks(kind: str, first: int, count: int, multiple: float) -> list[Task]:
         "catalogue",
         "pair",
     )
-    return [Task(kind, first + i, pattern[i % len(pattern)], multiple) for i in range(count)]
+    return [
+        Task(kind, first + i, pattern[i % len(pattern)], multiple, level, follow)
+        for i in range(count)
+        for level in levels
+    ]
 
 
-def done_already(file: Path) -> dict[tuple[str, int, str, float], Outcome]:
+def done_already(file: Path) -> dict[Key, Outcome]:
     """The trials in a file, by task."""
-    return {(o.kind, o.seed, o.sort, o.multiple): o for o in load(file)}
+    return {o.key: o for o in load(file)}
 
 
 def run_tasks(
@@ -232,10 +232,10 @@ def run_tasks(
     scheduler: str | None = None,
     each: Callable[[Outcome], None] = lambda outcome: None,
 ) -> list[Outcome]:
-    """Every trial that is not in the file yet, in parallel, each written as it comes. All outcomes, by seed."""
+    """Every trial that is not in the file yet, in parallel, each written as it comes. All outcomes, by seed, level."""
     have = done_already(file)
-    missing = [t for t in wanted if (t.kind, t.seed, t.sort, t.multiple) not in have]
-    outcomes = [have[(t.kind, t.seed, t.sort, t.multiple)] for t in wanted if t not in missing]
+    missing = [t for t in wanted if not t.done(have)]
+    outcomes = [have[t.key] for t in wanted if t.done(have)]
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("a") as log:
         for outcome in _run(missing, workers, scheduler):
@@ -243,7 +243,7 @@ def run_tasks(
             log.flush()
             outcomes.append(outcome)
             each(outcome)
-    return sorted(outcomes, key=lambda o: o.seed)
+    return sorted(outcomes, key=lambda o: (o.seed, o.imperfection))
 
 
 def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[Outcome]:
@@ -255,7 +255,7 @@ def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
             where = str(Path(__file__).parents[2]), __name__, "fields_of"
             calls = client.map(partial(call_from, *where), jobs, pure=False)
             for job in finished(calls):  # type: ignore[no-untyped-call]
-                yield Outcome(**job.result())
+                yield outcome_from(job.result())
         return
     # A process is one core: new ones read this when they load their linear algebra, forked ones have it loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

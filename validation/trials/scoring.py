@@ -10,8 +10,9 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from rich.table import Table
 
@@ -33,6 +34,26 @@ BLOCKS = {
     "check_valve_leak": "flow",
 }
 """In which equation an effect sits that no catalogue holds; air that comes in wrongly is seen in the flows too."""
+
+
+ARMS = ("proposed", "random")
+"""How a further run is chosen: by the diagnosis, or drawn from the same menu."""
+Key = tuple[str, int, str, float, float]
+"""Kind, seed, sort, multiple of the detection limit, imperfection in percent."""
+
+
+@dataclass(frozen=True)
+class FollowUp:
+    """What became of an answer that was a class, with more runs (follow_up.py)."""
+
+    arm: str
+    experiments: list[str]
+    """The runs that were made, in their order."""
+    verdict: str
+    named: list[list[str]]
+    one_right: bool
+    """Each cause that is named in the end is one effect that is there."""
+    seconds: float
 
 
 @dataclass(frozen=True)
@@ -57,6 +78,15 @@ class Outcome:
     seconds: float = 0.0
     achievable: float | None = None
     """The same part for the core with exactly what was hidden; None where the catalogue has no name for it."""
+    imperfection: float = 0.0
+    """Percent by which the machine was off from what can be declared."""
+    follow_ups: list[FollowUp] | None = None
+    """None: nobody asked for them."""
+
+    @property
+    def key(self) -> Key:
+        """What tells it from other outcomes."""
+        return self.kind, self.seed, self.sort, self.multiple, self.imperfection
 
     @property
     def of_achievable(self) -> float | None:
@@ -190,14 +220,27 @@ def confusion(outcomes: Sequence[Outcome]) -> dict[str, Counter[str]]:
 
 
 def load(file: Path) -> list[Outcome]:
-    """The trials in a file of JSON lines; a last line that was cut off is left out."""
-    found = []
+    """The trials in a file of JSON lines, of one that is there twice the later; a last line that was cut off is left
+    out."""
+    found: dict[Key, Outcome] = {}
     for line in file.read_text().splitlines() if file.exists() else []:
         try:
-            found.append(Outcome(**json.loads(line)))
+            outcome = outcome_from(json.loads(line))
         except (ValueError, TypeError):
             continue
-    return found
+        found[outcome.key] = outcome
+    return list(found.values())
+
+
+def outcome_from(fields: dict[str, Any]) -> Outcome:
+    """An outcome from its fields, as a file or a worker has them."""
+    outcome = Outcome(**fields)
+    if outcome.follow_ups is None:
+        return outcome
+    rows: Sequence[Any] = outcome.follow_ups
+    return replace(
+        outcome, follow_ups=[r if isinstance(r, FollowUp) else FollowUp(**r) for r in rows]
+    )
 
 
 # ---- tables ------------------------------------------------------------

@@ -28,7 +28,8 @@ from sms.diagnosis.thresholds import AVERAGE, ENDS
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
 
-from validation.trials.machines import Task, answered, hide, key_of, outcome_of, taken
+from validation.trials.answers import answered, key_of
+from validation.trials.machines import Task, hide, outcome_of, taken
 from validation.trials.peers.candidates import chosen_by_aic, single_causes
 from validation.trials.peers.exchange import Array, Averages, Equation, Part, PlantAnswer, Question
 from validation.trials.scoring import BLOCKS, Outcome

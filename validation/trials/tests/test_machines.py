@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from validation.random_cases import SEED
+from validation.trials.answers import answered
 from validation.trials.detection_limits import limits_in_trials
 from validation.trials.machines import (
     Outcome,
     Task,
     achievable,
-    answered,
     confusion,
     done_already,
     goals,
@@ -78,7 +78,7 @@ def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
     done = outcome(wanted[0].sort, ["piston_leakage"], "cause", ["piston_leakage"])
     file = tmp_path / "trials.jsonl"
     file.write_text(dumps(asdict(done)) + "\n" + '{"kind": "ben')
-    assert list(done_already(file)) == [("bench", 1, wanted[0].sort, 3.0)]
+    assert list(done_already(file)) == [("bench", 1, wanted[0].sort, 3.0, 0.0)]
     assert run_tasks(wanted, file, workers=1) == [done]
 
 

@@ -1,0 +1,42 @@
+"""A run that somebody asks for, on the machine of a trial: its record joins those that are there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from validation.twins.air import Array
+from validation.twins.draw import ADDED, Run, Trial, recorded
+from validation.twins.rig_file import entry, write_record
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A run as it is asked for."""
+
+    name: str
+    setpoint: Array  # as the rig's `following` takes it, one a period of its clock
+    gains: Array  # of the controller that follows it (controller.py)
+    changes: Mapping[
+        str, float
+    ]  # declared number -> by how much it is changed for this run, on purpose
+
+
+def add_record(trial: Trial, asked: Asked, stream: tuple[int, ...], out: Path) -> None:
+    """Measure it and list it in the rig file of `out`, to be identified with; `stream` tells its noise from others'."""
+    rig, seed = trial.rig, np.random.SeedSequence(trial.seed, spawn_key=(ADDED, *stream))
+    changed = {name: trial.truth.value(name) + by for name, by in asked.changes.items()}
+    truth = trial.truth.having(**changed)
+    duration = rig.clock.period * (len(asked.setpoint) - 1)
+    plan = rig.following(asked.setpoint, asked.gains)
+    run = Run(asked.name, "identify", "asked")
+    write_record(
+        out / f"{run.name}.csv", recorded(trial, truth, plan, duration, np.random.default_rng(seed))
+    )
+    known = {d.parameter: d for d in rig.declared}
+    told = {n: f"{known[n].value + by:g} {known[n].unit}" for n, by in asked.changes.items()}
+    with (out / "rig.toml").open("a") as file:
+        file.write("\n" + entry(run, told))
