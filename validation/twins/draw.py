@@ -275,7 +275,8 @@ def recorded(
         columns[signal] = converted(channel_of(signal, channels), values)
     columns |= measured.setpoints
     for signal, values in measured.signals.items():
-        seen = values if off is None else bowed(signal, values, off.bows[signal])
+        bow = 0.0 if off is None else off.bows.get(signal, 0.0)
+        seen = bowed(signal, values, bow) if bow != 0.0 else values
         down = off is not None and off.rounds_down
         noisy = seen + noises[signal][::logged]
         columns[signal] = converted(channel_of(signal, channels), noisy, down)

@@ -6,9 +6,11 @@ What is hidden in a trial is one thing; this is what no model has, and what nobo
   of the opening, charge and discharge each with the level as RMS over the openings that runs use. A core that knows one
   smooth error of charge and one of discharge does not have these four.
 - Friction: so is the sliding friction, over the signed speed.
-- Sensors are not quite linear: a bow along the range, a tenth of the level of the range to either side of its best
-  straight line. Data sheets of position transducers and pressure transmitters say 0.1 to 0.5 percent of the range for
-  that ("independent linearity"); at a level of 1 to 4 percent it is 0.1 to 0.4 percent here.
+- Sensors are not quite linear: a bow along the span over which they were calibrated, a tenth of the level of that span
+  to either side of its best straight line. Data sheets of position transducers and pressure transmitters say 0.1 to 0.5
+  percent for that ("independent linearity"); at a level of 1 to 4 percent it is 0.1 to 0.4 percent here. The line
+  itself is right: a gain or a zero that is off is an effect of the catalogue, and to name it would be no wrong name.
+  For the same reason there is no bow where a reading stays at one value (supply pressure, temperature of a tank).
 - A controller holds its command, for a millisecond or for as long as the logger's step. In the first case the log has
   every tenth, fifth or second command, and the rig file says nothing, for nothing that could be said is true of what is
   between two samples; in the second it says `hold = "previous"`.
@@ -27,7 +29,7 @@ from typing import Any
 import numpy as np
 
 from validation.twins.air import Array
-from validation.twins.instruments import RANGES, range_of
+from validation.twins.instruments import SPANS, sort_of
 from validation.twins.maps import Maps, of_axes, off_by
 
 TERMS = 24
@@ -37,7 +39,7 @@ OPENING = (0.5, 2.5, 0.5)
 SPEED = (0.0, 0.3, 0.1)
 """m/s, the same for the speed of a piston."""
 BOW = 0.1
-"""Of the level, as a share of the range: a sensor's independent linearity."""
+"""Of the level, as a share of the span: a sensor's independent linearity."""
 FASTEST_CONTROL = 1e-3
 """s"""
 LARGEST = 10.0
@@ -99,7 +101,7 @@ class Imperfection:
     axes: tuple[MapErrors, ...]
     bows: Mapping[
         str, float
-    ]  # by signal: deviation from the best straight line, of the range, with its sign
+    ]  # by signal: deviation from the best straight line, of the span, with its sign
     log_step: float  # s
     control_period: float  # s, for which the controller holds its command
     rounds_down: bool
@@ -135,11 +137,12 @@ def draw_imperfection(
         for _ in range(axes)
     )
     log_step = float(for_logger.choice(np.asarray(log_steps)))
-    signs = for_bows.choice([-1.0, 1.0], len(signals))
+    bent = [s for s in signals if sort_of(s) in SPANS]
+    signs = for_bows.choice([-1.0, 1.0], len(bent))
     return Imperfection(
         level,
         errors,
-        {s: float(sign) * BOW * level for s, sign in zip(signals, signs, strict=True)},
+        {s: float(sign) * BOW * level for s, sign in zip(bent, signs, strict=True)},
         log_step,
         (FASTEST_CONTROL, log_step)[int(for_logger.integers(2))],
         bool(for_logger.integers(2)),
@@ -147,10 +150,10 @@ def draw_imperfection(
 
 
 def bowed(signal: str, reading: Array, bow: float) -> Array:
-    """What a sensor reads whose characteristic bows by `bow` of its range to either side of a straight line.
+    """What a sensor reads whose characteristic bows by `bow` of its span to either side of a straight line.
 
     The bow is the second Chebyshev polynomial: of all parabolas the one that a straight line fits best.
     """
-    low, high = RANGES[range_of(signal)]
+    low, high = SPANS[sort_of(signal)]
     place = 2.0 * (reading - low) / (high - low) - 1.0
     return np.asarray(reading + bow * (high - low) * (1.0 - 2.0 * place**2), dtype=np.float64)

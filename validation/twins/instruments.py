@@ -52,26 +52,24 @@ CHANNELS: Mapping[str, Channel] = {
 450 mm and 10 bar; the pressure noise is the source's (262 Pa, section 6.1)."""
 
 
-RANGES: Mapping[str, tuple[float, float]] = {
-    "extension": (-0.025, 0.425),
-    "chamber_pressure_lower": (0.0, 1e6),
-    "chamber_pressure_upper": (0.0, 1e6),
-    "supply_pressure": (0.0, 1e6),
-    "tank_pressure": (0.0, 1e6),
-    "tank_temperature": (273.15, 373.15),
-    "roll": (-0.52, 0.52),
-    "pitch": (-0.52, 0.52),
+SPANS: Mapping[str, tuple[float, float]] = {
+    "extension": (0.0, 0.4),
+    "chamber_pressure_lower": (86e3, 486e3),
+    "chamber_pressure_upper": (86e3, 486e3),
+    "tank_pressure": (86e3, 486e3),
+    "roll": (-0.1, 0.1),
+    "pitch": (-0.1, 0.1),
 }
-"""What each kind of sensor reads at either end of its range: the converters' above, a transmitter of 0 to 100 degrees,
-an inclinometer of 30 degrees to either side."""
+"""Between which readings each kind of sensor was calibrated: the stroke, ambient and supply, the platform's tilt. What
+reads one value all the time (a supply, a temperature) is calibrated there."""
 
 
 def channel_of(signal: str, channels: Mapping[str, Channel] = CHANNELS) -> Channel:
     """The channel of "extension", "extension_2", ..."""
-    return channels[range_of(signal)]
+    return channels[sort_of(signal)]
 
 
-def range_of(signal: str) -> str:
+def sort_of(signal: str) -> str:
     """A signal without its number: "extension" of "extension_2"."""
     return signal if signal in CHANNELS else signal.rpartition("_")[0]
 
