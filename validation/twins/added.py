@@ -12,6 +12,10 @@ from validation.twins.air import Array
 from validation.twins.draw import ADDED, Run, Trial, recorded
 from validation.twins.rig_file import entry, write_record
 
+ONE_TABLE = '[model]\nvalve = "iso_0_4_mpa"\n\n'
+"""A valve of these machines has one table whatever its supply. Its owner says so where he lowers the supply: else a
+tank's record is taken to follow the table that was measured nearest to it, and 100 kPa less is half-way to the next."""
+
 
 @dataclass(frozen=True)
 class Asked:
@@ -38,5 +42,8 @@ def add_record(trial: Trial, asked: Asked, stream: tuple[int, ...], out: Path) -
     )
     known = {d.parameter: d for d in rig.declared}
     told = {n: f"{known[n].value + by:g} {known[n].unit}" for n, by in asked.changes.items()}
-    with (out / "rig.toml").open("a") as file:
-        file.write("\n" + entry(run, told))
+    path = out / "rig.toml"
+    text = path.read_text() + "\n" + entry(run, told)
+    if "supply_pressure" in told and ONE_TABLE not in text:
+        text = text.replace("[signals]\n", f"{ONE_TABLE}[signals]\n", 1)
+    path.write_text(text)

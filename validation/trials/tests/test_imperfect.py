@@ -15,6 +15,7 @@ from sms.estimation.run import make_run
 from sms.io.errors import InputError
 from sms.io.rig import load_rig
 from sms.rigs.kinds import KINDS
+from sms.rigs.tank import valve_of
 from typer.testing import CliRunner
 
 from validation.trials import follow_up
@@ -178,6 +179,7 @@ def test_an_added_record_is_of_the_same_machine_and_says_what_was_changed(
     added = make_run(rig, records[-1])
     assert (added.name, added.role) == ("asked_1", "identify")
     assert added.conditions == {"supply_pressure": -1e5}
+    assert {valve_of(rig, make_run(rig, r)) for r in records} == {"iso_0_4_mpa"}
     assert added.step == pytest.approx(trial.rig.sample_step)
     read = np.median(added.signals["supply_pressure"])
     known = trial.truth.value("supply_pressure")
