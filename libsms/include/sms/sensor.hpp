@@ -63,10 +63,10 @@ struct SensorErrors {
 };
 
 // extension_sensor(p), supply_pressure_sensor(p), ...
-#define SMS_SENSOR(name, unit, zero, label, value, rate, lag, clock, datum, ...)       \
-  template <typename S>                                                                \
-  SensorErrors<S> name##_sensor(const Params<S>& p) {                                  \
-    return {p.sensor_gain_##name, p.sensor_offset_##name, S(lag), S(clock), S(datum)}; \
+#define SMS_SENSOR(name, unit, zero, zero_known, gain_known, label, value, rate, lag, clock, datum, ...) \
+  template <typename S>                                                                                  \
+  SensorErrors<S> name##_sensor(const Params<S>& p) {                                                    \
+    return {p.sensor_gain_##name, p.sensor_offset_##name, S(lag), S(clock), S(datum)};                   \
   }
 #include "sms/signals.def"
 

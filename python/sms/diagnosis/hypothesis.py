@@ -22,7 +22,9 @@ from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import FLOW_MAP, PARAMETERS, Parameter
 
-ALWAYS_UNCERTAIN = ("stiction_shape", *FLOW_MAP)
+SENSORS = tuple(n for n, p in PARAMETERS.items() if n.startswith("sensor_") and p.uncertainty > 0.0)
+"""Zero and gain of pressure sensors, which are calibrated to so much."""
+ALWAYS_UNCERTAIN = ("stiction_shape", *FLOW_MAP, *SENSORS)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
 TURNS, SETTLED = 2, 0.2
 """Of parameters and discrepancy, each for the other; and the change of the logarithm of tau that ends it. Run time."""
@@ -173,10 +175,9 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     rig = data.rig
     start = rig.start()
     names = [n for n, d in rig.parameters.items() if d.fit]
-    known = [n for e in effects for n in e.parameters if n not in names]
-    if (
-        data.identify.whitened
-    ):  # a simulation feels every parameter, not only those that are effects
+    of_effects = [n for e in effects for n in e.parameters if n not in names]
+    known = [n for n in of_effects if n in rig.parameters or n not in SENSORS]
+    if data.identify.whitened:  # a simulation depends on every parameter, not only on those of effects
         known += [n for n, d in rig.parameters.items() if d.uncertainty > 0.0 and not d.fit]
         known += [n for n in ALWAYS_UNCERTAIN if n in rig.table and n not in rig.parameters]
     free: dict[str, tuple[float, float]] = {}
