@@ -226,7 +226,7 @@ TEST_CASE("platform: bad records are refused") {
   bad.pressure_upper[1].conservativeResize(kSamples - 1);
   refused(bad);
   bad = record;
-  bad.pitch[3] = std::nan("");
+  bad.extension[0][3] = std::nan("");
   refused(bad);
   bad = record;
   bad.step = 0.0;

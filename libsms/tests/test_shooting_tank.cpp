@@ -157,6 +157,23 @@ TEST_CASE("tank: a record of the model itself leaves nothing") {
   CHECK(without.norm() > 50.0);
 }
 
+TEST_CASE("tank: a reading that is NaN is compared with nothing, at the beginning of a window too") {
+  const sms::Params<double> p;
+  Eigen::MatrixXd y = simulated(p, 300);
+  const auto held_against = [](const Eigen::MatrixXd& record) {
+    return est::ShootingProblem<est::TankPlant>(
+        est::TankPlant({record_of(record)}, {1.0, 1.0, 1.0}, sms::published_laws(), 1e-3), {});
+  };
+  const int begins = held_against(y).windows().back().first;
+  y.block(begins - 2, 0, 30, 1).setConstant(std::nan(""));
+  y(20, 0) = std::nan("");
+  const auto problem = held_against(y);
+  Eigen::VectorXd residual;
+  problem.evaluate(p, {}, &residual, nullptr);
+  CHECK(residual.allFinite());
+  CHECK(problem.errors(p).cwiseAbs().maxCoeff() < 1.0);
+}
+
 TEST_CASE("tank: after parameters beyond numbers a search begins where it began before") {
   const sms::Params<double> p;
   const est::TankPlant plant({record_of(simulated(p, 300))}, {100.0, 1.0, 100.0}, sms::published_laws(), 1e-3);
@@ -177,15 +194,18 @@ TEST_CASE("tank: after parameters beyond numbers a search begins where it began 
 
 TEST_CASE("tank: what cannot be a record is refused") {
   const Eigen::VectorXd good = Eigen::VectorXd::Constant(100, 5.0), bad = Eigen::VectorXd::Constant(99, 5.0);
-  Eigen::VectorXd holed = good;
-  holed[50] = std::nan("");
+  Eigen::VectorXd endless = good;
+  endless[50] = std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd nowhere = Eigen::VectorXd::Constant(100, std::nan(""));
   const auto make = [](const est::TankPlantRecord& record) {
     return est::TankPlant({record}, {1.0, 1.0, 1.0}, sms::published_laws(), 1e-3);
   };
   CHECK_NOTHROW(make({kStep, good, good, {}, {}, {}}));
   CHECK_THROWS_WITH_AS(make({kStep, good, bad, {}, {}, {}}), doctest::Contains("pressure has 99 samples"),
                        std::invalid_argument);
-  CHECK_THROWS_WITH_AS(make({kStep, good, good, holed, {}, {}}), doctest::Contains("temperature holds"),
+  CHECK_THROWS_WITH_AS(make({kStep, good, good, endless, {}, {}}), doctest::Contains("temperature holds"),
+                       std::invalid_argument);
+  CHECK_THROWS_WITH_AS(make({kStep, good, nowhere, {}, {}, {}}), doctest::Contains("pressure is nowhere within"),
                        std::invalid_argument);
   CHECK_THROWS_WITH_AS(make({0.0, good, good, {}, {}, {}}), doctest::Contains("step of time"), std::invalid_argument);
 }
