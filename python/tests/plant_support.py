@@ -35,6 +35,10 @@ chamber_pressure_upper = { noise = "300 Pa" }
 [parameters]
 mass_flow_gain = { value = 1.5, uncertainty = 0.1 }
 valve_centre = { value = "5 V", uncertainty = "0.02 V" }
+sensor_offset_chamber_pressure_lower = { value = "0 Pa", uncertainty = "0 Pa" }
+sensor_offset_chamber_pressure_upper = { value = "0 Pa", uncertainty = "0 Pa" }
+sensor_gain_chamber_pressure_lower = { value = 0.0, uncertainty = 0.0 }
+sensor_gain_chamber_pressure_upper = { value = 0.0, uncertainty = 0.0 }
 """
 
 

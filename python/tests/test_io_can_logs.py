@@ -236,7 +236,7 @@ def test_what_cannot_be_a_record_is_said(tmp_path: Path, dbc: Path) -> None:
     write_log(tmp_path / "new.blf", [can.Message(arbitration_id=1, data=b"\0", timestamp=1.0)])
     assert "not a readable DBC" in failure(tmp_path, "new.blf", SIGNALS)
     dbc.unlink()
-    assert "[data] dbc: there is no file" in failure(tmp_path, "new.blf", SIGNALS)
+    assert "[data] dbc: there is no DBC file" in failure(tmp_path, "new.blf", SIGNALS)
 
 
 def test_a_table_of_numbers_is_no_log(tmp_path: Path) -> None:

@@ -248,7 +248,9 @@ def write_trial(trial: Trial, out: Path | str, truth_path: Path | str) -> None:
     for name, columns in records.items():
         write_record(out / f"{name}.csv", columns)
     spread = float(np.random.default_rng(for_declared).uniform(0.85, 1.15))
-    (out / "rig.toml").write_text(rig_file(trial.rig, trial.runs, trial.channels, spread))
+    calibrated = trial.truth.imperfection is None  # no sensor bows, and its owner knows
+    text = rig_file(trial.rig, trial.runs, trial.channels, spread, calibrated)
+    (out / "rig.toml").write_text(text)
 
 
 def _record(trial: Trial, excited_by: str, seed: np.random.SeedSequence) -> dict[str, Array]:

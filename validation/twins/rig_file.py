@@ -50,9 +50,16 @@ def write_record(path: Path, columns: Mapping[str, Array]) -> None:
 
 
 def rig_file(
-    rig: VirtualRig, runs: Sequence[Listed], channels: Mapping[str, Channel], spread: float
+    rig: VirtualRig,
+    runs: Sequence[Listed],
+    channels: Mapping[str, Channel],
+    spread: float,
+    calibrated: bool,
 ) -> str:
-    """What the rig's owner knows; nothing in it depends on the effect."""
+    """What the rig's owner knows; nothing in it depends on the effect.
+
+    calibrated: zero and gain of the pressure sensors are known exactly, and not only as those of any such sensor.
+    """
     rows = ["time = " + '"time"']
     # Held from one row to the next, or only from one of the commands between two rows.
     held = rig.clock.held
@@ -72,6 +79,8 @@ def rig_file(
         f"uncertainty = {_quantity(d.half_width, d.unit)} }}"
         for d in rig.declared
     ]
+    if calibrated:
+        parameters += sensors_as_calibrated(rig.signals)
     command = (
         f"A controller of {1.0 / rig.clock.period:g} Hz holds its command."
         if held
@@ -93,6 +102,16 @@ def rig_file(
             *(entry(run) for run in runs),
         ]
     )
+
+
+def sensors_as_calibrated(signals: Sequence[str]) -> list[str]:
+    """Rows for [parameters], of the sensors for which the core allows an error where nothing is declared."""
+    rows = []
+    for stem in ("chamber_pressure_lower", "chamber_pressure_upper", "tank_pressure"):
+        if any(signal.startswith(stem) for signal in signals):
+            rows.append(f'sensor_offset_{stem} = {{ value = "0 Pa", uncertainty = "0 Pa" }}')
+            rows.append(f"sensor_gain_{stem} = {{ value = 0.0, uncertainty = 0.0 }}")
+    return rows
 
 
 def entry(run: Listed, conditions: Mapping[str, str] | None = None) -> str:

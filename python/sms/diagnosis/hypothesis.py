@@ -177,7 +177,9 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     names = [n for n, d in rig.parameters.items() if d.fit]
     of_effects = [n for e in effects for n in e.parameters if n not in names]
     known = [n for n in of_effects if n in rig.parameters or n not in SENSORS]
-    if data.identify.whitened:  # a simulation depends on every parameter, not only on those of effects
+    if (
+        data.identify.whitened
+    ):  # a simulation depends on every parameter, not only on those of effects
         known += [n for n, d in rig.parameters.items() if d.uncertainty > 0.0 and not d.fit]
         known += [n for n in ALWAYS_UNCERTAIN if n in rig.table and n not in rig.parameters]
     free: dict[str, tuple[float, float]] = {}
