@@ -75,9 +75,20 @@ def test_the_sizes_of_the_inputs_are_found_and_that_of_one_that_is_not_there_goe
     residual = residual_of(problem, (true, 0.0), random)
     found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
     assert found.tau[0] == pytest.approx(true, rel=0.4)  # 252 draws, five standard errors
-    assert found.tau[1] < 0.1 * true + 0.2  # and falling with every iteration
+    assert found.tau[1] ** 2 < 5.0 * standard_error_at_nothing(problem, true)
     white = found.whitener.whiten(residual)
     assert np.mean(white**2) == pytest.approx(1.0, abs=0.3)
+
+
+def standard_error_at_nothing(problem: Drawn, first: float) -> float:
+    """Of the second input's variance, where it is nothing: its Fisher information under the marginal likelihood."""
+    information = 0.0
+    for w in problem.windows:
+        inputs = problem.inputs[w.row : w.row + w.rows]
+        covariance = np.eye(SAMPLES) + first**2 * inputs[:, :KNOTS] @ inputs[:, :KNOTS].T
+        seen = inputs[:, KNOTS:].T @ np.linalg.solve(covariance, inputs[:, KNOTS:])
+        information += 0.5 * float(np.sum(seen**2))
+    return information**-0.5
 
 
 @dataclass
