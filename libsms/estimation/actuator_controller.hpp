@@ -138,7 +138,8 @@ class SimulatedController final : public ValveDrive<S> {
     fed_ = simulated_;
   }
 
-  // Spool and drive where the window begins: they follow the command alone, and are run up over the 50 ms before, in stiff steps.
+  // Spool and drive where the window begins: they follow the command alone, and are run up over the 50 ms before, in
+  // stiff steps.
   void begin(ActuatorState<S>& a) override {
     const int first = window_.first * grid_.steps;
     const int run_up = std::min(first, static_cast<int>(0.05 / value_of(h_)) + 1);

@@ -1,8 +1,9 @@
 // A plant through time where it is stiff, in steps of a fixed size.
 //
 // Friction inside its ramp is stiff (38 N over 5 mm/s on 3.6 kg: 0.3 ms), and so are a chamber that is nearly closed, a
-// reservoir behind a short line, a spool of some 100 Hz and the contact at an end. A Rosenbrock method of second order with an approximate
-// Jacobian A (ROS2; Verwer, Spee, Blom and Hundsdorfer 1999) stays stable there and keeps its order whatever A is:
+// reservoir behind a short line, a spool of some 100 Hz and the contact at an end. A Rosenbrock method of second order
+// with an approximate Jacobian A (ROS2; Verwer, Spee, Blom and Hundsdorfer 1999) stays stable there and keeps its order
+// whatever A is:
 //
 //   (I - gamma h A) k1 = f(t, y)
 //   (I - gamma h A) k2 = f(t + h, y + h k1) - 2 k1,      y + h (3 k1 + k2) / 2,      gamma = 1 - 1/sqrt(2)

@@ -4,6 +4,7 @@ pipeline         the steps, from a rig file to a Diagnosis (result.py)
 simulated        the same steps for the rigs that are simulated against their records
 hypothesis       which parameters may move, and their fit
 evidence         sizes with their standard errors, prediction gains, what is left
+free_run         the error of a simulation over each whole record
 related_rigs     the causes of one rig followed to its relatives
 thresholds       every tuning constant, with its origin
 effects/         the effects that can be named

@@ -14,15 +14,13 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.result import FreeRun
+from sms.diagnosis.thresholds import INSIDE
 from sms.estimation.divergence import LARGEST
 from sms.estimation.windows import Runs
 from sms.io.signals import without_leg
 
 WHOLE = 1e9
 """s: a window longer than any record."""
-INSIDE = 4.0
-"""Standard deviations of the noise by which a record has to keep from the ends of the stroke, where a simulation that
-goes beyond them is said to leave it. Noise alone goes so far once in thirty thousand samples."""
 
 
 def free_runs(baseline: Fitted, extended: Fitted, data: Data) -> tuple[FreeRun, ...]:

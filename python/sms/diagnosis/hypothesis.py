@@ -176,6 +176,7 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     start = rig.start()
     names = [n for n, d in rig.parameters.items() if d.fit]
     of_effects = [n for e in effects for n in e.parameters if n not in names]
+    # Of a cylinder the noise is not declared, and what its sensors are calibrated to neither.
     known = [n for n in of_effects if n in rig.parameters or n not in SENSORS]
     if (
         data.identify.whitened

@@ -127,6 +127,18 @@ DIFFERS = 6.0
 DIFFERS_BY = 0.4
 """Of the largest shift: by how much the values differ at the least. Trials with bad input."""
 
+# ---- Systematic errors -------------------------------------------------------------------------------
+
+BENDS = 0.5
+"""Of a signal's range: the length along it over which an error of a law changes. Judgement: laws of friction and flow
+are smooth, and what is off in them too."""
+
+# ---- Free runs over whole records ----------------------------------------------------------------------
+
+INSIDE = 4.0
+"""Standard deviations of the noise by which a record has to keep from the ends of the stroke, where a simulation that
+goes beyond them is said to leave it. Convention: noise alone goes so far once in thirty thousand samples."""
+
 # ---- Unknown inputs --------------------------------------------------------------------------------
 
 PIECES = 7

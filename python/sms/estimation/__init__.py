@@ -2,6 +2,7 @@
 
 kind               what both ask of a kind of rig: its outputs, its unknown inputs, how its problem is made
 windows            records as windows, each simulated from an initial state of its own
+chosen_windows     the windows that clipped readings leave
 divergence         a simulation that diverges, held within numbers
 least_squares      Gauss-Newton within bounds, in few evaluations
 nuisance           parameters that may move within what is declared, and what they can undo

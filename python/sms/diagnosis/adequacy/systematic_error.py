@@ -27,11 +27,9 @@ from sms.diagnosis.localisation.signal_functions import (
     through_plant,
 )
 from sms.diagnosis.localisation.unknown_inputs import thinned
+from sms.diagnosis.thresholds import BENDS
 from sms.estimation.windows import Runs
 
-BENDS = 0.5
-"""Of a signal's range: the length along it over which an error of a law changes. Judgement: laws of friction and flow
-are smooth, and what is off in them too."""
 ITERATIONS = 40
 """Of the fixed point of the standard deviations. Run time: it settles within some percent."""
 LEAST = 1e-3
@@ -41,11 +39,11 @@ LEAST = 1e-3
 def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
     """The same estimates; their covariance (free, free) with what systematic errors of the equations could imitate.
 
-    Unchanged for a model that was not fitted with a discrepancy. Never smaller than it was.
+    Unchanged for a model that was not fitted with a discrepancy or has no equation for it. Never smaller than it was.
     """
-    if fitted.discrepancy is None or not fitted.movable:
-        return fitted
     functions = _functions(fitted, runs)
+    if functions is None or not fitted.movable:
+        return fitted
     nuisance = nuisance_of(fitted, white=True)
     stacked = np.vstack([nuisance.jacobian, nuisance.pull])
     scale = np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
@@ -77,9 +75,11 @@ class Functions:
     """(functions,): to which pair of an equation and a signal each belongs."""
 
 
-def _functions(fitted: Fitted, runs: Runs) -> Functions:
-    """Every equation with every signal; equations that every leg has are one, with the signals of each."""
-    assert fitted.discrepancy is not None
+def _functions(fitted: Fitted, runs: Runs) -> Functions | None:
+    """Every equation with every signal; equations that every leg has are one, with the signals of each. None without
+    an equation or a signal that moves."""
+    if fitted.discrepancy is None:
+        return None
     hidden, signals = fitted.discrepancy.inputs, signals_of(runs)
     by_leg = alike(tuple(runs.kind.hidden))
     single = {
@@ -100,6 +100,8 @@ def _functions(fitted: Fitted, runs: Runs) -> Functions:
                         axis=0,
                     )
                 )
+    if not parts:
+        return None
     group = np.repeat(np.arange(len(parts)), [p.shape[1] for p in parts])
     return Functions(np.hstack(parts), group)
 
@@ -129,6 +131,7 @@ class Systematic:
     ) -> Systematic:
         """jacobian (rows, parameters), functions (rows, functions), residual (rows,), with what is declared as rows."""
         noise = inflation * float(np.mean(residual**2))
+        count = jacobian.shape[1]
         basis, _ = np.linalg.qr(jacobian)
         off = functions - basis @ (basis.T @ functions)
         products, score = off.T @ off / noise, off.T @ residual / noise
@@ -146,8 +149,7 @@ class Systematic:
         d = sigma[group]
         together = np.hstack([jacobian, functions * d])
         information = together.T @ together
-        information[len(basis.T) :, len(basis.T) :] += noise * np.eye(len(d))
+        information[count:, count:] += noise * np.eye(len(d))
         inverse = np.linalg.pinv(information, rcond=1e-12, hermitian=True)
-        count = jacobian.shape[1]
         move = -(inverse @ (together.T @ residual))[:count]
         return cls(noise * inverse[:count, :count], move, sigma * moved / np.sqrt(len(residual)))

@@ -1,5 +1,6 @@
 """Which equation an error comes from, and along what it is arranged.
 
+signal_functions    terms of an equation that follow a signal, and their sensitivities
 unknown_inputs      unknown inputs estimated in the simulation
 equation_error      each equation fed with measured signals, none simulated
 activity            when a cause acts, as unknown inputs

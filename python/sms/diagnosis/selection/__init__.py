@@ -8,6 +8,7 @@ candidates             a trial of an effect; one round on a cylinder
 forward_selection      rounds on a cylinder until nothing more is found, and the verdict
 validation             judgement of a cylinder's trials on the validation records, and ambiguity groups
 stepwise               rounds on a simulated rig: selected forward, eliminated backward
+pairs                  two causes of which neither stands alone
 judgement              judgement of its trials on records of both roles, and ambiguity groups
 cross_validation       the same where the validation records are insensitive to an effect
 outcome                what the rounds brought

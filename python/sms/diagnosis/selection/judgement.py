@@ -98,11 +98,13 @@ def _by_likelihood(
 
 
 def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
-    """Whether the validation records change with the trial by less than is worth a word, and are not surely worse for
-    it. With records of the healthy machine the likelihood has weighed them already: not surely worse is enough.
+    """Whether the change of the validation records is not practically significant, and not significantly for the worse.
+    With records of the healthy machine the likelihood has weighed them already: the latter is enough.
     """
-    if trial.gain_interval[1] <= 0.0 or data.healthy is not None:
-        return trial.gain_interval[1] > 0.0
+    if trial.gain_interval[1] < 0.0:
+        return False
+    if data.healthy is not None:
+        return True
     honest = data.validate.kind.honest[0]
     return cross_validation.change_on_validation(trial.fitted, current, data) < honest
 

@@ -7,13 +7,14 @@ takes, of what the other leaves alone, what a cause has to take, and both togeth
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
 
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, logarithms
+from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import extended
@@ -44,31 +45,13 @@ def try_pairs(
     if not both:
         return []
     best, pair = min(both.items(), key=lambda item: _left_of(item[1], data))
-    first, second = sorted(best)
     if not _enough(current, pair, data):
         return []
-
-    def rivals(member: int, other: int) -> list[Trial]:
-        """The member on top of the other one alone, and what does nearly the same there."""
-        change = pair.fit.residual - alone[other].fit.residual
-        found = []
-        for k in range(len(tried)):
-            if k == other:
-                continue
-            fitted = both[frozenset((k, other))]
-            if (
-                k == member
-                or _cosine(change, fitted.fit.residual - alone[other].fit.residual) > TWINS
-            ):
-                squared = residual_of(data.validate, fitted.params) ** 2
-                found.append(
-                    Trial(effects[k], fitted, 1.0, squared, identified=fitted.fit.residual**2)
-                )
-        return found
-
+    first, second = sorted(best)
     rounds = []
     for member, other in ((first, second), (second, first)):
-        candidates = rivals(member, other)
+        beside = {effects[k]: both[frozenset((k, other))] for k in range(len(tried)) if k != other}
+        candidates = _rivals(effects[member], beside, alone[other], data)
         judge(candidates, alone[other], data, original, needed, rng, tried=len(both))
         accepted = [t for t in candidates if t.accepted]
         if not any(t.effect is effects[member] for t in accepted):
@@ -76,6 +59,19 @@ def try_pairs(
         accepted.sort(key=lambda t: t.effect is not effects[member])
         rounds.append(Round(candidates, alike(accepted, alone[other], data)))
     return rounds
+
+
+def _rivals(
+    member: Effect, beside: Mapping[Effect, Fitted], other: Fitted, data: Data
+) -> list[Trial]:
+    """On top of the other one alone: the member, and what changes the predictions as it does."""
+    changes = {e: fitted.fit.residual - other.fit.residual for e, fitted in beside.items()}
+    found = []
+    for effect, fitted in beside.items():
+        if effect is member or _cosine(changes[member], changes[effect]) > TWINS:
+            squared = residual_of(data.validate, fitted.params) ** 2
+            found.append(Trial(effect, fitted, 1.0, squared, identified=fitted.fit.residual**2))
+    return found
 
 
 def _most_promising(trials: Sequence[Trial], current: Fitted) -> list[Trial]:
