@@ -203,13 +203,15 @@ def simulate(
     return Motion(fine_times(states.shape[0]), states, commands)
 
 
-def follow(p: Machine, commands: Array, start: Array, start_time: float = 0.0) -> Array:
+def follow(
+    p: Machine, commands: Array, start: Array, start_time: float = 0.0, maps: Maps | None = None
+) -> Array:
     """States under commands of SAMPLE_STEP from a given state, FINE points a sample, (n, STATES)."""
     states = np.zeros(((commands.size - 1) * FINE + 1, STATES))
     nothing = np.zeros(commands.size)
     run(
         p,
-        exact(),
+        exact() if maps is None else maps,
         STRAIGHT,
         start.copy(),
         nothing,

@@ -93,7 +93,7 @@ class BenchRig:
             start[9] = truth.machine.coulomb_force * truth.machine.bristle_compliance * slide
         start[10] = start[1]
         start[6] = truth.machine.supply_pressure
-        states = bench.follow(truth.machine, commands["valve_command"], start, time)
+        states = bench.follow(truth.machine, commands["valve_command"], start, time, truth.maps)
         return self._signals(truth, states)
 
     def _signals(self, truth: Truth, states: Array) -> dict[str, Array]:

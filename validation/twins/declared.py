@@ -60,10 +60,27 @@ TANK = (
 )
 
 
+FLOW_MAP = 0.03
+"""Half width, as a share of the flow, within which the core takes the valve's map to be known."""
+PRESSURE_SENSORS = {"offset": 1.0e3, "gain": 0.0025}
+"""Half widths within which the core takes their zero (Pa) and gain to be known, where nothing is declared."""
+
+
+def pressure_sensors(signals: Sequence[str]) -> dict[str, float]:
+    """Half widths of the numbers of the pressure sensors among the signals, by the truth's names."""
+    return {
+        f"{signal}.{field}": half
+        for signal in signals
+        if signal.startswith(("chamber_pressure", "tank_pressure"))
+        for field, half in PRESSURE_SENSORS.items()
+    }
+
+
 def half_width(declared: Sequence[Declared], effect: Effect) -> float:
-    """Half width of the declared number that an effect shifts; 0 for an extra term."""
-    widths = [d.half_width for d in declared if effect.shifts and d.name in effect.names]
-    return widths[0] if widths else 0.0
+    """Half width of the number that an effect shifts; 0 for an extra term."""
+    known = pressure_sensors([effect.target] if effect.target else [])
+    known |= {d.name: d.half_width for d in declared if effect.shifts and d.name}
+    return max((known.get(name, 0.0) for name in effect.names), default=0.0)
 
 
 def drawn(

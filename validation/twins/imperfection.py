@@ -93,6 +93,22 @@ class MapErrors:
         return off_by(self.charge, self.discharge, self.friction)
 
 
+NOTHING = SmoothFunction(0.0, (0.0,), (0.0,))
+
+
+def cosines(size: float, between: tuple[float, float, float]) -> list[SmoothFunction]:
+    """Waves that together are a smooth random function of |x| with `size` as RMS, each with its standard deviation."""
+    _, high, length = between
+    waves = np.arange(20) * np.pi / (2.0 * high)
+    squares = np.where(waves > 0.0, 2.0, 1.0) * np.exp(-0.5 * (waves * length) ** 2)
+    squares /= squares[0] + 0.5 * squares[1:].sum()
+    return [
+        SmoothFunction(size * float(np.sqrt(square)), (float(wave),), (0.5 * np.pi,))
+        for wave, square in zip(waves, squares, strict=True)
+        if square > 1e-3 * squares[0]
+    ]
+
+
 @dataclass(frozen=True)
 class Imperfection:
     """Of one machine and its instruments."""
@@ -147,6 +163,14 @@ def draw_imperfection(
         (FASTEST_CONTROL, log_step)[int(for_logger.integers(2))],
         bool(for_logger.integers(2)),
     )
+
+
+def map_modes(size: float, axes: int) -> list[Imperfection]:
+    """What the valves of one machine can be off by together, alike for either port: charging, discharging."""
+    of_flow = cosines(size, OPENING)
+    errors = [MapErrors(one, NOTHING, NOTHING) for one in of_flow]
+    errors += [MapErrors(NOTHING, one, NOTHING) for one in of_flow]
+    return [Imperfection(size, (e,) * axes, {}, 0.0, 0.0, False) for e in errors]
 
 
 def bowed(signal: str, reading: Array, bow: float) -> Array:

@@ -2,18 +2,22 @@
 
 The records are cut into stretches of a second whose initial states are unknown, as a diagnosis
 would treat them. A change dy of all signals, divided by their noise, loses in every stretch what
-an initial state imitates and, over all stretches, what the declared numbers imitate within their
-half widths. With i the information left,
+an initial state imitates and, over all stretches, what the machine may be off by: the declared
+numbers within their half widths, the valve's map and the pressure sensors within what a core
+that is told nothing allows them (declared.py), and maps and sensors as those of MACHINES drawn
+machines that are IMPERFECT percent off what can be declared (imperfection.py). With i the
+information left,
 
-    i = d'd - d'N (N'N + P)^-1 N'd,        d, N after the stretches' own projections
+    i = d'd - d'N (N'N + 1)^-1 N'd,        d, N after the stretches' own projections
 
-the size counts as detectable where sqrt(i) = SIGMAS (five standard deviations of the best
-estimate), and where the change that is left has FLOOR of the noise's RMS in at least one signal:
-below that the unavoidable differences between two descriptions of one machine are as large.
-Coloured noise counts as white noise of the same density at low frequency, which is on the safe
-side.
+and N a column for each of these in units of its standard deviation, the size counts as detectable
+where sqrt(i) = SIGMAS (five standard deviations of the best estimate), and where the change that
+what is declared leaves is in at least one signal as large as FLOOR of the noise, and as what the
+drawn machines leave there: below that a cause drowns in the differences between two descriptions
+of one machine. Coloured noise counts as white noise of the same density at low frequency, which
+is on the safe side.
 
-    python -m validation.trials limits bench
+    python -m validation.twins limits bench
 
 makes the tables in limits/, which the draws read.
 """
@@ -22,21 +26,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from validation.twins.air import Array
-from validation.twins.declared import as_declared
+from validation.twins.declared import FLOW_MAP, as_declared, pressure_sensors
 from validation.twins.effects import Effect
+from validation.twins.imperfection import bowed, draw_imperfection, map_modes
 from validation.twins.instruments import Channel, channel_of
 from validation.twins.measured import VirtualRig
 from validation.twins.truth import Truth
 
 SIGMAS = 5.0
 FLOOR = 0.5
+IMPERFECT = 2.0
+"""Percent: the level up to which trials have to name what they hide."""
+MACHINES = 40
 STRETCH = 1.0
 """s, the length of a stretch."""
 FOLDER = Path(__file__).parent / "limits"
@@ -71,10 +79,21 @@ class Limits:
             signal: 1.0 / spread(channel_of(signal), rig.sample_step) for signal in rig.signals
         }
         self.stretches = [stretch for plan in plans for stretch in self._cut(plan)]
-        movable = [d for d in rig.declared if d.name is not None and d.half_width > 0.0]
-        self.nuisances = np.column_stack(
-            [self._scaled(str(d.name), 0.2 * d.half_width, d.half_width) for d in movable]
+        widths = {
+            **{d.name: d.half_width for d in rig.declared if d.name and d.half_width > 0.0},
+            **pressure_sensors(rig.signals),
+        }
+        self.names = list(widths)
+        self.declared = np.column_stack(
+            [self._scaled(name, 0.2 * half, half) for name, half in widths.items()]
+            + [
+                self.change(replace(self.truth, imperfection=mode))
+                for mode in map_modes(0.5 * FLOW_MAP, rig.axes)
+            ]
         )
+        self.drawn = np.column_stack(
+            [self.change(self._drawn(seed)) for seed in range(MACHINES)]
+        ) / np.sqrt(MACHINES)
 
     def _cut(self, plan: Any) -> list[Stretch]:
         rig = self.rig
@@ -100,6 +119,14 @@ class Limits:
             stretches.append(Stretch(time, commands, start, signals, basis))
         return stretches
 
+    def _drawn(self, seed: int) -> Truth:
+        """A machine as declared, but imperfect."""
+        rig = self.rig
+        off = draw_imperfection(
+            IMPERFECT, rig.axes, rig.signals, rig.log_steps, np.random.SeedSequence(seed)
+        )
+        return replace(self.truth, imperfection=off)
+
     def _difference(self, stretch: Stretch, signals: Mapping[str, Array]) -> Array:
         return np.concatenate(
             [self.weights[s] * (signals[s] - stretch.signals[s]) for s in self.rig.signals]
@@ -107,9 +134,15 @@ class Limits:
 
     def change(self, truth: Truth) -> Array:
         """Whitened change of all signals against the healthy rig, less the initial states'."""
+        bows = {} if truth.imperfection is None else truth.imperfection.bows
         parts = []
         for s in self.stretches:
-            d = self._difference(s, self.rig.window(truth, s.commands, s.start, s.time))
+            signals = self.rig.window(truth, s.commands, s.start, s.time)
+            seen = {
+                name: bowed(name, v, bows[name]) if name in bows else v
+                for name, v in signals.items()
+            }
+            d = self._difference(s, seen)
             parts.append(d - s.basis @ (s.basis.T @ d))
         return np.concatenate(parts)
 
@@ -119,30 +152,27 @@ class Limits:
         return self.change(moved) * (0.5 * half / step)
 
     def left(self, change: Array, effect: Effect) -> tuple[float, float]:
-        """sqrt(information) of a change, and its largest RMS in a signal over that one's noise."""
-        names = [d.name for d in self.rig.declared if d.name is not None and d.half_width > 0.0]
-        own = [name not in effect.names for name in names]
-        n = np.sqrt(self.every) * self.nuisances[:, own]
-        change = np.sqrt(self.every) * change
-        normal = n.T @ n + np.eye(n.shape[1])
-        share = np.linalg.solve(normal, n.T @ change)
-        rest = change - n @ share
+        """sqrt(information) of a change, and its RMS over what it has to exceed, in the signal where that is most."""
+        scale = np.sqrt(self.every)  # a stretch stands for so many
+        own = [k for k, name in enumerate(self.names) if name in effect.names]
+        declared, drawn = scale * np.delete(self.declared, own, axis=1), scale * self.drawn
+        change = scale * change
+        share, rest = undone(change, np.hstack([declared, drawn]))
         information = float(rest @ rest + share @ share)
-        count = len(self.rig.signals)
-        by_signal = rest.reshape(len(self.stretches), count, -1)
-        rms = np.sqrt(np.mean(by_signal**2, axis=(0, 2)) / self.every)
-        of_noise = [
-            r / self.weights[s] / channel_of(s).deviation
-            for r, s in zip(rms, self.rig.signals, strict=True)
-        ]
-        return float(np.sqrt(information)), float(max(of_noise))
+        beside = np.column_stack([change, drawn])
+        left = undone(beside, declared)[1] / scale
+        by_signal = left.reshape(len(self.stretches), len(self.rig.signals), -1, beside.shape[1])
+        squares = np.mean(by_signal**2, axis=(0, 2))  # (signals, columns)
+        noise = [self.weights[s] * channel_of(s).deviation for s in self.rig.signals]
+        least = np.maximum(FLOOR * np.array(noise), np.sqrt(squares[:, 1:].sum(axis=1)))
+        return float(np.sqrt(information)), float(np.max(np.sqrt(squares[:, 0]) / least))
 
     def seen(self, effect: Effect, size: float) -> float:
         """How many times over an effect of this size is detectable; 1 is its limit."""
         sigmas, share = self.left(
             self.change(effect.hidden_in(self.truth, effect.sense * size)), effect
         )
-        return min(sigmas / SIGMAS, share / FLOOR)
+        return min(sigmas / SIGMAS, share)
 
     def limit(self, effect: Effect) -> float | None:
         """The detectable size; None when even the largest cannot be seen."""
@@ -157,6 +187,13 @@ class Limits:
             if size == effect.largest and seen < 1.0 and self.seen(effect, size) < 1.0:
                 return None
         return size
+
+
+def undone(change: Array, nuisances: Array) -> tuple[Array, Array]:
+    """How far nuisances of unit variance move for a change (rows,) or changes (rows, m), and the rest of these."""
+    normal = nuisances.T @ nuisances + np.eye(nuisances.shape[1])
+    share = np.asarray(np.linalg.solve(normal, nuisances.T @ change), dtype=np.float64)
+    return share, change - nuisances @ share
 
 
 def table(

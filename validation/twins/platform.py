@@ -348,13 +348,21 @@ def simulate(
     return Motion(states, readings, commands)
 
 
-def follow(p: Machine, body: Body, commands: Array, start: Array, start_time: float) -> Motion:
+def follow(
+    p: Machine,
+    body: Body,
+    commands: Array,
+    start: Array,
+    start_time: float,
+    maps: Maps | None = None,
+) -> Motion:
     """Under recorded commands (n, 3) from a given state."""
     states = np.zeros(((commands.shape[0] - 1) * FINE + 1, STATES))
     readings = np.zeros((states.shape[0], READINGS))
     nothing = np.zeros_like(commands)
     run(
-        p, body, mechanism(body), exact_maps(), STRAIGHT, start.copy(), nothing, nothing, -1.0,
-        np.empty(0), nothing, np.zeros(3), commands.copy(), states, readings, start_time,
+        p, body, mechanism(body), exact_maps() if maps is None else maps, STRAIGHT, start.copy(),
+        nothing, nothing, -1.0, np.empty(0), nothing, np.zeros(3), commands.copy(), states, readings,
+        start_time,
     )  # fmt: skip
     return Motion(states, readings, commands)

@@ -114,12 +114,12 @@ def test_nuisances_lie_within_what_is_declared() -> None:
 
 def test_a_shift_lies_three_limits_beyond_the_half_width() -> None:
     for seed in range(12):
-        trial = draw_trial("bench", seed, "coulomb_friction", 3.0)
+        trial = draw_trial("bench", seed, "viscous_friction", 3.0)
         (hidden,) = trial.hidden
         assert hidden.limit is not None
         beyond = abs(hidden.value) - half_width(trial.rig.declared, hidden.effect)
         assert beyond == pytest.approx(3.0 * hidden.limit)
-        assert trial.truth.value("coulomb_force") == pytest.approx(38.0 + hidden.value)
+        assert trial.truth.value("viscous_friction") == pytest.approx(530.0 + hidden.value)
 
 
 @pytest.mark.parametrize("kind", sorted(RIGS))
