@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sms import Params, _core
 from sms.estimation.divergence import LARGEST, WithinNumbers
 from sms.estimation.least_squares import Free, fit_windows
+from sms.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
 NAME = "coulomb_force"
@@ -55,7 +56,7 @@ class Growing:
 def test_what_stays_within_numbers_is_left_as_it_is() -> None:
     plain = Growing(100.0, np.nan, np.nan)
     params = Params()
-    held = WithinNumbers(plain)
+    held = WithinNumbers(plain, PARAMETERS)
     for got, meant in zip(
         held.evaluate(params, [NAME]), plain.evaluate(params, [NAME]), strict=True
     ):
@@ -65,15 +66,16 @@ def test_what_stays_within_numbers_is_left_as_it_is() -> None:
 
 
 @pytest.mark.parametrize("error", [np.nan, np.inf, -np.inf, 1e300])
-@pytest.mark.parametrize("slope", [np.nan, np.inf, -1e300])
+@pytest.mark.parametrize("slope", [np.nan, np.inf, -1e300, 1e10])
 def test_a_window_that_runs_away_has_a_large_error_and_no_slope(error: float, slope: float) -> None:
     params = Params()
     params[NAME] = 50.0
-    held = WithinNumbers(Growing(45.0, error, slope))
+    held = WithinNumbers(Growing(45.0, error, slope), PARAMETERS)
     residual, jacobian = held.evaluate(params, [NAME])
     assert residual[0] == 10.0 and np.all(np.abs(residual[12:]) == LARGEST)
     assert np.all(jacobian[:10] == 1.0) and np.all(jacobian[10:] == 0.0)
-    assert np.all(held.hidden(params, 2)[10:] == 0.0)
+    if not abs(slope) < 1e100:
+        assert np.all(held.hidden(params, 2)[10:] == 0.0)
     assert np.all(np.isfinite(held.errors(params)))
 
 
@@ -84,8 +86,7 @@ def test_a_fit_that_begins_where_a_window_runs_away_ends_at_the_truth(
 ) -> None:
     start = Params()
     start[NAME] = 60.0
-    found = fit_windows(
-        WithinNumbers(Growing(50.0, error, slope)), start, [Free(NAME, 0.0, 500.0, 0.0, 60.0)]
-    )
+    held = WithinNumbers(Growing(50.0, error, slope), PARAMETERS)
+    found = fit_windows(held, start, [Free(NAME, 0.0, 500.0, 0.0, 60.0)])
     assert found.params[NAME] == pytest.approx(TRUTH, rel=1e-4)
     assert np.all(np.isfinite(found.jacobian))

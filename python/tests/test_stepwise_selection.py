@@ -35,6 +35,7 @@ from sms.parameters import FLOW_MAP
 
 from validation.random_cases import draw
 from validation.trials.foreign import judged
+from validation.twins.draw import draw as draw_machine
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 
@@ -244,3 +245,11 @@ def test_a_floor_that_the_rig_file_declares_is_no_fault(tmp_path: Path) -> None:
         record = load_record(rig, rig.records[0])
         faults.append(sum("end of its range" in f.message for f in check_record(rig, record)))
     assert faults == [1, 0]
+
+
+@pytest.mark.full
+def test_no_cause_is_named_before_what_acts_in_the_same_equation_was_fitted(tmp_path: Path) -> None:
+    """Air that keeps its heat: an exponent of 1.4 explains 98 % and promises more, by slope and by finite steps."""
+    draw_machine("bench", 970008, tmp_path / "records", tmp_path / "truth.json", "heat_transfer")
+    answer = diagnose(tmp_path / "records" / "rig.toml")
+    assert [list(cause.members) for cause in answer.causes] == [["heat_transfer"]]

@@ -159,7 +159,7 @@ CATALOGUE: tuple[Effect, ...] = (
         drawn_from=(10.0, 80.0),
     ),
     _term("pressure_dependent_friction", "pressure_friction", "N/Pa", 4e-4, 2e-6, signed=True),
-    _term("direction_dependent_friction", "direction_friction", "N", 60.0, 0.5, signed=True),
+    _term("direction_dependent_friction", "direction_friction", "N", 30.0, 0.5, signed=True),
     _term("friction_lag", "friction_lag", "s", 0.3, 2e-3),
     _term("position_dependent_friction", "position_friction", "1/m", 10.0, 0.1, signed=True),
     _shift("viscous_friction", "viscous_friction", "N s/m", 450.0, 10.0),

@@ -7,7 +7,7 @@ ends there. Such a window tells where a fit must not go, and nothing else.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,11 +16,16 @@ from numpy.typing import NDArray
 from sms import _core
 from sms.arrays import Array
 from sms.estimation.problem import Window, WindowProblem
+from sms.parameters import Parameter
 
 LARGEST = 1e6
 """Of a residual, in units of the noise: what no sensor's range holds."""
-STEEPEST = 1e100
-"""Of a derivative per unit of its parameter: its square is a number still."""
+STEEPEST = 1e9
+"""Of a derivative, in units of the noise over the parameter's whole range: a millionth of that range would move
+readings by as much as no fit can follow, and one such window would outweigh all others. Numerics: windows that do not
+diverge stay below 1e8."""
+LARGEST_INPUT = 1e100
+"""Of a derivative per unit of a hidden input, whose range nobody knows: its square is a number still."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +33,8 @@ class WithinNumbers:
     """A window problem whose windows that run away have large errors, and no slope."""
 
     problem: WindowProblem
+    table: Mapping[str, Parameter]
+    """Of its parameters, for their ranges."""
 
     @property
     def rows(self) -> int:
@@ -40,7 +47,8 @@ class WithinNumbers:
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         """Residual (rows,) and Jacobian (rows, free), as WindowProblem has them; all of them finite."""
         residual, jacobian = self.problem.evaluate(params, free)
-        return _held(residual), self._flat_where_steep(jacobian)
+        ranges = np.array([self.table[n].upper - self.table[n].lower for n in free])
+        return _held(residual), self._flat_where_steep(jacobian, STEEPEST / ranges)
 
     def errors(self, params: _core.Params) -> Array:
         """(rows,), as WindowProblem has them; all of them finite."""
@@ -48,10 +56,10 @@ class WithinNumbers:
 
     def hidden(self, params: _core.Params, knots: int) -> Array:
         """(rows, hidden inputs x knots), as WindowProblem has them; all of them finite."""
-        return self._flat_where_steep(self.problem.hidden(params, knots))
+        return self._flat_where_steep(self.problem.hidden(params, knots), np.array(LARGEST_INPUT))
 
-    def _flat_where_steep(self, jacobian: Array) -> Array:
-        steep = np.any(~(np.abs(jacobian) < STEEPEST), axis=1)
+    def _flat_where_steep(self, jacobian: Array, steepest: Array) -> Array:
+        steep = np.any(~(np.abs(jacobian) < steepest), axis=1)
         if steep.any():
             for w in self.windows:
                 rows = slice(w.row, w.row + w.rows)

@@ -65,7 +65,7 @@ class Runs:
         """The same where it does not diverge, and where no reading is clipped."""
         if not self.whitened:
             return self.simulation
-        counted = WithinNumbers(self.simulation)
+        counted = WithinNumbers(self.simulation, self.rig.table)
         return counted if self.complete else without_clipped(counted, self.motions)
 
     def fit(

@@ -62,7 +62,11 @@ def best_step(
     name = effect.parameters[0]
     now = base[name]
     before = residual_of(excerpt, base)
-    best = Step(0.0, base, np.zeros(len(before)))
+    nothing = best = Step(0.0, base, np.zeros(len(before)))
+    if (
+        len(effect.parameters) > 1
+    ):  # its first parameter may help only with another value of the others
+        best = Step(-np.inf, base, nothing.change)
     low, high = room_of(effect, base, data.rig)
     ladders = [[now + part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
     if low > 0.0 or high < 0.0:  # what is plausible begins away from here
@@ -78,13 +82,14 @@ def best_step(
                 best = Step(gain, params, residual - before)
             if gain < -len(excerpt.problem.windows):  # worse by far: larger ones are no better
                 break
-    if best.gain <= 0.0:
-        return best
+    if best.params is base:
+        return nothing
     bounds = extended(current.hypothesis, effect, data).free
     free = [Free(n, *bounds[n], 0.0, base[n]) for n in effect.parameters]
     found = fit_windows(excerpt.problem, best.params, free)
     gain = here - logarithms(excerpt, found.residual)
-    return best if gain < best.gain else Step(gain, found.params, found.residual - before)
+    found_step = Step(gain, found.params, found.residual - before)
+    return max(nothing, best, found_step, key=lambda step: step.gain)
 
 
 def chosen_by_step(steps: Sequence[Step]) -> list[int]:

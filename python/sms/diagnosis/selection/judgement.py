@@ -114,8 +114,12 @@ def _untenable(trial: Trial, data: Data) -> str:
     for name in trial.effect.parameters:
         value, declared = trial.fitted.params[name], trial.fitted.hypothesis.start[name]
         beside = name != trial.effect.parameters[0]
-        if name not in trial.fitted.movable and not (beside and value == declared):
-            said = format_quantity(value, data.rig.table[name].unit, name)
+        entry = data.rig.table[name]
+        in_full = (
+            entry.unit == "1" and value == entry.upper == 1.0
+        )  # a share: the law holds altogether
+        if name not in trial.fitted.movable and not in_full and not (beside and value == declared):
+            said = format_quantity(value, entry.unit, name)
             return f"fits best at or beyond {said}, the end of what is plausible"
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"

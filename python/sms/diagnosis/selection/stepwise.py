@@ -7,7 +7,8 @@ on the records that it was fitted to and on those that it was not. What it leave
 How much a model leaves is counted by window and signal (adequacy/residual_energy.py).
 
 A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and at a ladder of
-finite sizes (finite_steps.py). Those that promise most are fitted, from the better of the two. The best joins the model
+finite sizes (finite_steps.py). Those that promise most are fitted, from the better of the two, and with them what helps
+in the same equation as the best of them: none is named before its rivals there were heard. The best joins the model
 with whatever cannot be told from it, and so on until nothing stands. In the end each cause is taken out again, and must
 be missed.
 """
@@ -79,9 +80,16 @@ def try_effects(
         for k in range(len(effects))
         if k not in chosen and np.any(scores.cosine[k, chosen] > ALIKE)
     ]
-    first = {
-        k: _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
-        for k in chosen
+
+    def candidate(k: int) -> Fitted:
+        return _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
+
+    first = {k: candidate(k) for k in chosen}
+    best = min(first, key=lambda k: logarithms(data.identify, first[k].fit.residual))
+    first |= {
+        k: candidate(k)
+        for k, effect in enumerate(effects)
+        if k not in first and effect.block == effects[best].block and steps[k].gain > 0.0
     }
     before = refitted(current, data).fit.residual ** 2
     trials = []
