@@ -11,10 +11,10 @@ from plant_support import write_bench, write_platform
 from sms import _core
 from sms.diagnosis import diagnose
 from sms.diagnosis.preparation import make_data
+from sms.diagnosis.wording import of_command
 from sms.estimation.windows import Runs
 from sms.io import InputError, load_rig
 from sms.io.records import load_record
-from sms.report.wording import of_command
 from sms.rigs.mixed_loops import Mixed
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")

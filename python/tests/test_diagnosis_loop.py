@@ -13,13 +13,13 @@ from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.preparation import make_data
+from sms.diagnosis.wording import of_command
 from sms.estimation.run import Run
 from sms.io import InputError, load_rig
 from sms.io.records import load_record
 from sms.io.signals import of_legs
 from sms.report.console import print_diagnosis
 from sms.report.diagnosis import report_html
-from sms.report.wording import of_command
 from sms.rigs.bench import MENU
 from sms.rigs.kinds import kind_of
 from sms.rigs.platform import MENU as PLATFORM_MENU

@@ -17,9 +17,9 @@ from sms.diagnosis.localisation.equation_error import fed_equations, feed, smoot
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import EquationError, FedEquations, Hidden, Shape
+from sms.diagnosis.wording_simulated import agree, two_ways
 from sms.io import load_rig
 from sms.report.origin import _fed
-from sms.report.wording_simulated import agree, two_ways
 from sms.rigs.bench import EQUATIONS
 
 from validation.random_cases import draw

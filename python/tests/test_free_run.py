@@ -18,12 +18,12 @@ from sms.diagnosis.free_run import free_runs
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import FreeRun, as_json
+from sms.diagnosis.wording_simulated import free_run_in_words, worst_free_runs
 from sms.estimation.least_squares import changed
 from sms.io import load_rig
 from sms.io.records import load_record
 from sms.report.console import print_diagnosis
 from sms.report.diagnosis import report_html
-from sms.report.wording_simulated import free_run_in_words, worst_free_runs
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 LEAK = 3e-9

@@ -6,6 +6,7 @@ hypothesis       which parameters may move, and their fit
 evidence         sizes with their standard errors, prediction gains, what is left
 free_run         the error of a simulation over each whole record
 related_rigs     the causes of one rig followed to its relatives
+wording          the answer in words; of simulated rigs: wording_simulated
 thresholds       every tuning constant, with its origin
 effects/         the effects that can be named
 selection/       which of them enter the model

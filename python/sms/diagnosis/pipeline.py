@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms import _core
+from sms.diagnosis import wording
 from sms.diagnosis.adequacy.repeatability import Repeatability
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.evidence import candidates_of, cause_of, gains, remainder_of, series_of, value_of
@@ -30,7 +31,6 @@ from sms.io import check as data_check
 from sms.io.errors import InputError
 from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
-from sms.report import wording
 from sms.rigs.kinds import KINDS
 
 

@@ -65,12 +65,8 @@ from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
 from sms.diagnosis.selection.stepwise import Progress, stepwise_selection
 from sms.diagnosis.thresholds import UNKNOWN_SHARE
-from sms.io.errors import InputError
-from sms.io.records import Record
-from sms.io.rig import Rig
-from sms.parameters import FLOW_MAP
-from sms.report.wording import data_fault
-from sms.report.wording_simulated import (
+from sms.diagnosis.wording import data_fault
+from sms.diagnosis.wording_simulated import (
     conclusion,
     nearest_in_words,
     remainder_in_words,
@@ -79,6 +75,10 @@ from sms.report.wording_simulated import (
     still_hidden_in_words,
     words_of_inconsistency,
 )
+from sms.io.errors import InputError
+from sms.io.records import Record
+from sms.io.rig import Rig
+from sms.parameters import FLOW_MAP
 from sms.rigs.kinds import KINDS
 
 

@@ -19,9 +19,13 @@ from sms.diagnosis.result import (
     Remainder,
     Unexplained,
 )
+from sms.diagnosis.wording import INSENSITIVE, arranged
+from sms.diagnosis.wording_simulated import (
+    free_run_in_words,
+    still_hidden_in_words,
+    worst_free_runs,
+)
 from sms.report.verdict import VERDICT_WORDS, is_shift, parameter_text
-from sms.report.wording import INSENSITIVE, arranged
-from sms.report.wording_simulated import free_run_in_words, still_hidden_in_words, worst_free_runs
 from sms.units_display import (
     capital,
     format_aligned,

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sms.diagnosis.result import Diagnosis, ErrorCurve, FedEquations, Hidden, Shape
+from sms.diagnosis.wording_simulated import two_ways
 from sms.report.markup import Scale, bar, esc, section, table
-from sms.report.wording_simulated import two_ways
 from sms.report.worth import gain_table
 from sms.units_display import axis_unit, capital, format_aligned, format_percent, words
 

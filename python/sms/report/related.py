@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sms.diagnosis.result import Diagnosis, ParameterValue, Related
+from sms.diagnosis.wording import REPEAT
 from sms.report.markup import Scale, dot, esc, section, table
 from sms.report.verdict import parameter_text
-from sms.report.wording import REPEAT
 from sms.units_display import MISSING, capital
 
 

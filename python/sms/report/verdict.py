@@ -7,8 +7,8 @@ import re
 from collections.abc import Mapping
 
 from sms.diagnosis.result import Cause, Diagnosis, Member, ParameterValue, Verdict
+from sms.diagnosis.wording import INSENSITIVE
 from sms.report.markup import Scale, dot, effect_label, empty, esc, paragraphs, section, table
-from sms.report.wording import INSENSITIVE
 from sms.units_display import (
     capital,
     format_aligned,

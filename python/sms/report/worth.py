@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 
 from sms.diagnosis.result import Diagnosis, FreeRun, Gain, InUse, Remainder, Unexplained
+from sms.diagnosis.wording import ARRANGED
+from sms.diagnosis.wording_simulated import free_run_in_words, worst_free_runs
 from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch, table
-from sms.report.wording import ARRANGED
-from sms.report.wording_simulated import free_run_in_words, worst_free_runs
 from sms.units_display import (
     capital,
     format_aligned,

@@ -16,7 +16,7 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array
-from sms.diagnosis import preparation, simulated
+from sms.diagnosis import preparation, simulated, wording
 from sms.diagnosis.effects import catalogue
 from sms.diagnosis.own.model import Effect, Model
 from sms.diagnosis.own.records import Record, check
@@ -32,7 +32,6 @@ from sms.io.errors import InputError
 from sms.io.rig import DataLayout, Declaration, Rig
 from sms.io.write import write_text_atomically
 from sms.parameters import Parameter
-from sms.report import wording
 from sms.report.diagnosis import report_html
 
 

@@ -22,8 +22,8 @@ from sms.diagnosis.result import (
     Unexplained,
     Verdict,
 )
+from sms.diagnosis.wording import capital, chosen_again, explained, judged_by_cross_validation
 from sms.parameters import Parameter
-from sms.report.wording import capital, chosen_again, explained, judged_by_cross_validation
 from sms.units_display import format_aligned, format_percent, format_quantity
 from sms.units_display import words as spaced
 
