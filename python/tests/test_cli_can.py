@@ -16,7 +16,7 @@ from sms.io import InputError
 from sms.io.can_files import read_frames
 from sms.io.can_frames import load_dbc
 from sms.io.can_logs import read_can_log
-from sms.io.tables import read_table
+from sms.io.table_files import read_table
 from typer.testing import CliRunner, Result
 
 COMMANDS = ("monitor", "drive", "record", "replay", "get", "set", "rig")

@@ -15,7 +15,7 @@ from sms.io import InputError, Record, check_record, load_record, load_rig, writ
 from sms.io.can_files import WRITTEN, LogWriter, read_frames
 from sms.io.can_frames import find_channel, load_dbc
 from sms.io.can_logs import read_can_log
-from sms.io.tables import is_can_log
+from sms.io.table_files import is_can_log
 
 from validation.random_cases import draw
 

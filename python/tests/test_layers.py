@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -61,3 +62,17 @@ def test_no_two_packages_import_each_other() -> None:
         for package in leaves:
             del below[package]
     assert not below
+
+
+def test_no_file_imports_itself_through_others() -> None:
+    files = {
+        ".".join(("sms", *file.relative_to(ROOT).with_suffix("").parts)): file
+        for file in ROOT.rglob("*.py")
+        if file.name != "__init__.py"
+    }
+    needs = {
+        name: {n for of in imported(file) for n in (of, of.rpartition(".")[0]) if n in files}
+        for name, file in files.items()
+    }
+    assert sum(map(len, needs.values())) > len(files)
+    TopologicalSorter(needs).prepare()  # CycleError names them

@@ -2,11 +2,11 @@
 
     python -m validation.trials.detection_limits bench
 
-A trial hides an effect at three times the limit of machines/limits.py, and nothing else decides its size. That limit
-comes from the simulator of the trials, which shares no code with the core: five of its standard errors, and at least
-half the noise's RMS in one signal. Beside it stands what `sms limits` finds with the core's derivatives on the healthy
-records of such a trial: the trial's limit in standard errors of the core. Fewer than five would be a trial that hides
-less than it says.
+A trial hides an effect at three times the limit of validation/twins/limits.py, and nothing else decides its size. That
+limit comes from the simulator of the trials, which shares no code with the core: five of its standard errors beside all
+that a machine may be off by, and in one signal as much as machines 2 % off leave there. Beside it stands what
+`sms limits` finds with the core's derivatives on the healthy records of such a trial: the trial's limit in standard
+errors of the core. Fewer than five would be a trial that hides less than it says.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Blind trials on simulated machines: an effect is hidden, the diagnosis has to name it, then the truth is opened.
 
 One trial is one line of a JSON-lines file, so that a run can be stopped and taken up again: what is in the file is not
-done twice. `./dev trials` is the command; the generator (machines/) knows nothing of the diagnosis, and the diagnosis
-nothing of it; they meet in the records' folder only.
+done twice. `./dev trials` is the command; the generator (validation/twins) knows nothing of the diagnosis, and the
+diagnosis nothing of it; they meet in the records' folder only.
 """
 
 from __future__ import annotations

@@ -107,7 +107,7 @@ def table(
 
     Other commands need no table: a rig file names the log itself as a record.
     """
-    from sms.io.tables import is_can_log, read_table  # noqa: PLC0415
+    from sms.io.table_files import is_can_log, read_table  # noqa: PLC0415
     from sms.io.write import write_table  # noqa: PLC0415
 
     if not is_can_log(log):

@@ -11,7 +11,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.identification.noise import Noise, Spectrum
 from sms.io.errors import InputError, did_you_mean
-from sms.io.tables import read_table
+from sms.io.table_files import read_table
 from sms.io.units import array_to_si, split_column_name
 
 

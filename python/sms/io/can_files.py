@@ -17,7 +17,7 @@ from typing import Any
 import can
 
 from sms.io.errors import InputError
-from sms.io.tables import ending_of, is_packed
+from sms.io.table import ending_of, is_packed
 
 #: what `record` writes
 WRITTEN = (".blf", ".asc", ".mf4", ".csv")

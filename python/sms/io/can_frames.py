@@ -17,7 +17,7 @@ from sms.arrays import Array
 from sms.io.can_decode import Payloads
 from sms.io.can_files import read_frames
 from sms.io.errors import InputError, did_you_mean
-from sms.io.tables import Remark
+from sms.io.table import Remark
 from sms.io.units import split_column_name
 
 TIME = "time"  #: the column of the frames' times, from the log's first frame on

@@ -40,7 +40,7 @@ from sms.io.can_frames import (
     load_dbc,
 )
 from sms.io.errors import InputError
-from sms.io.tables import Remark, Table
+from sms.io.table import Remark, Table
 
 TELEMETRY = "Controller"  #: who sends the telemetry of the project's own bus
 GAP = 5.0  #: times the usual interval of a message

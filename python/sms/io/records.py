@@ -18,7 +18,8 @@ from sms.io.errors import InputError, did_you_mean
 from sms.io.rig import RecordSource, Rig, Role
 from sms.io.signal_sources import SignalSource
 from sms.io.signals import SIGNAL_UNITS, without_leg
-from sms.io.tables import Table, is_can_log, read_table
+from sms.io.table import Table
+from sms.io.table_files import is_can_log, read_table
 from sms.io.units import array_to_si, split_column_name
 
 Severity = Literal["error", "warning", "note"]

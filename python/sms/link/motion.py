@@ -11,7 +11,8 @@ from scipy.interpolate import PchipInterpolator
 from sms import OutOfWorkspaceError, Params, inverse_kinematics
 from sms.arrays import Array
 from sms.io.errors import InputError, did_you_mean
-from sms.io.tables import Table, read_table
+from sms.io.table import Table
+from sms.io.table_files import read_table
 from sms.io.units import array_to_si, split_column_name
 
 MID_HEIGHT = 0.5  #: m; the platform's height at mid-stroke, where a heave of zero is

@@ -14,7 +14,7 @@ from sms.diagnosis.own.model import Input, Model, Output
 from sms.diagnosis.result import Finding
 from sms.io.errors import InputError, did_you_mean
 from sms.io.rig import Role
-from sms.io.tables import read_table
+from sms.io.table_files import read_table
 from sms.io.units import array_to_si, split_column_name
 
 UNEVEN = 1e-2

@@ -12,8 +12,7 @@ import io
 import re
 import zlib
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ import scipy.io
 from numpy.typing import NDArray
 
 from sms.io.errors import InputError
+from sms.io.table import Table, ending_of, is_packed
 
 TEXT_ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")
 _CAN_ENDINGS = (".blf", ".mf4", ".trc", ".db")
@@ -32,49 +32,6 @@ _CAN_OPENINGS = {  # the first line of a CAN log that is text; a table may have 
 }
 _SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "whitespace": r"\s+"}
 _HEADER_WORD = re.compile(r"[^\s\[\]]+(?:\s*\[[^\]]*\])?")
-
-
-@dataclass(frozen=True)
-class Remark:
-    """Something seen while reading a file that its user should know; the samples are used."""
-
-    line: int | None  #: as in `Table.lines`; None: the file as a whole
-    column: str | None
-    message: str
-    remedy: str
-
-
-@dataclass(frozen=True, eq=False)
-class Table:
-    """Named columns of one file, as they stand there."""
-
-    file: Path
-    names: tuple[str, ...]  #: "stroke [mm]"
-    cells: pd.DataFrame  #: columns 0 to n - 1, numbers or text
-    lines: NDArray[np.int64]  #: (samples,) line (in .mat and .parquet: row) of each sample
-    other_lengths: Mapping[str, int]  #: vectors of a .mat file that are not as long as the rest
-    remarks: tuple[Remark, ...] = ()
-
-    def numbers(self, column: int) -> tuple[NDArray[np.float64], list[tuple[int, str]]]:
-        """One column as numbers (samples,), and the cells that are none: (index, their text)."""
-        cells = self.cells.iloc[:, column]
-        numeric = pd.api.types.is_numeric_dtype(cells) and not pd.api.types.is_bool_dtype(cells)
-        plain = cells if numeric else cells.astype(str).str.strip()
-        values = np.array(pd.to_numeric(plain, errors="coerce"), dtype=np.float64)
-        bad = np.flatnonzero(~np.isfinite(values))
-        texts = ["" if pd.isna(cells.iloc[i]) else str(cells.iloc[i]).strip() for i in bad]
-        values[bad] = np.nan
-        return values, [(int(i), text) for i, text in zip(bad, texts, strict=True)]
-
-
-def is_packed(file: Path) -> bool:
-    """Whether a file is packed by gzip, by its name."""
-    return file.name.lower().endswith(".gz")
-
-
-def ending_of(file: Path) -> str:
-    """What the name says of the format, without what it says of packing: ".asc" of "Run.ASC.gz"."""
-    return Path(file.name.lower().removesuffix(".gz")).suffix
 
 
 def is_can_log(file: Path) -> bool:
