@@ -7,10 +7,10 @@ on the records that it was fitted to and on those that it was not. What it leave
 How much a model leaves is counted by window and signal (adequacy/residual_energy.py).
 
 A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and at a ladder of
-finite sizes (finite_steps.py). Those that promise most are fitted, from the better of the two, and with them what helps
-in the same equation as the best of them: none is named before its rivals there were heard. The best joins the model
-with whatever cannot be told from it, and so on until nothing stands. In the end each cause is taken out again, and must
-be missed.
+finite sizes (finite_steps.py). Those that promise most are fitted, from the better of the two, and with them the rivals
+of the best in its own equation: what helps there, and laws of several parameters, which may help only beside other
+numbers. The best joins the model with whatever cannot be told from it, and so on until nothing stands. In the end each
+cause is taken out again, and must be missed.
 """
 
 from __future__ import annotations
@@ -89,7 +89,9 @@ def try_effects(
     first |= {
         k: candidate(k)
         for k, effect in enumerate(effects)
-        if k not in first and effect.block == effects[best].block and steps[k].gain > 0.0
+        if k not in first
+        and effect.block == effects[best].block
+        and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
     }
     before = refitted(current, data).fit.residual ** 2
     trials = []
@@ -135,7 +137,10 @@ def _fitted(
     linear = now + float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
     linear = linear if effect.step is None else max(linear, 0.1 * effect.step)
     best: tuple[float, _core.Params] | None = None
-    for start in (step.params, changed(current.params, [name], np.array([linear]))):
+    starts = [changed(current.params, [name], np.array([linear]))]
+    if step.gain > 0.0:  # else the neutral value, which is left only where all else makes up for it
+        starts.append(step.params)
+    for start in starts:
         residual = residual_of(data.identify, start)
         if np.all(np.isfinite(residual)):
             left = logarithms(data.identify, residual)
