@@ -62,11 +62,9 @@ def best_step(
     name = effect.parameters[0]
     now = base[name]
     before = residual_of(excerpt, base)
-    nothing = best = Step(0.0, base, np.zeros(len(before)))
-    if (
-        len(effect.parameters) > 1
-    ):  # its first parameter may help only with another value of the others
-        best = Step(-np.inf, base, nothing.change)
+    nothing = Step(0.0, base, np.zeros(len(before)))
+    # The first of several parameters may help only with another value of the others.
+    best = nothing if len(effect.parameters) == 1 else Step(-np.inf, base, nothing.change)
     low, high = room_of(effect, base, data.rig)
     ladders = [[now + part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
     if low > 0.0 or high < 0.0:  # what is plausible begins away from here
@@ -88,8 +86,8 @@ def best_step(
     free = [Free(n, *bounds[n], 0.0, base[n]) for n in effect.parameters]
     found = fit_windows(excerpt.problem, best.params, free)
     gain = here - logarithms(excerpt, found.residual)
-    found_step = Step(gain, found.params, found.residual - before)
-    return max(nothing, best, found_step, key=lambda step: step.gain)
+    refined = Step(gain, found.params, found.residual - before)
+    return max(nothing, best, refined, key=lambda step: step.gain)
 
 
 def chosen_by_step(steps: Sequence[Step]) -> list[int]:
