@@ -28,9 +28,11 @@ from validation.twins.draw import draw
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 
 
-def fitted_to(folder: Path, kind: str, hidden: str, seed: int, cause: str) -> tuple[Data, Fitted]:
+def fitted_to(
+    folder: Path, kind: str, hidden: str, seed: int, cause: str, multiple: float = 3.0
+) -> tuple[Data, Fitted]:
     """The core with a cause, fitted to records in which `hidden` is hidden."""
-    draw(kind, seed, folder / "rig", folder / "truth.json", hidden, 3.0)
+    draw(kind, seed, folder / "rig", folder / "truth.json", hidden, multiple)
     rig = load_rig(folder / "rig" / "rig.toml")
     read, _ = read_and_check(rig)
     data, effects = make_data(rig, read), effects_of(rig)
@@ -43,7 +45,8 @@ def fitted_to(folder: Path, kind: str, hidden: str, seed: int, cause: str) -> tu
 
 
 def test_a_leak_that_opens_at_a_pressure_is_another_law(tmp_path: Path) -> None:
-    data, fitted = fitted_to(tmp_path, "bench", "check_valve_leak", 5, "fitting_leakage of lower")
+    leak = "fitting_leakage of lower"
+    data, fitted = fitted_to(tmp_path, "bench", "check_valve_leak", 5, leak, multiple=1.0)
     law = inconstancy(fitted, fitted.hypothesis.causes[0], data)
     assert law is not None
     assert law.signal.startswith("chamber_pressure")

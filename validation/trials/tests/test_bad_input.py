@@ -60,7 +60,7 @@ def test_saturation_through_half_the_run_is_said_and_names_no_cause(
 @pytest.mark.parametrize(
     ("kind", "effect", "multiple"),
     [
-        ("tank", "dead_volume", 12.0),
+        ("tank", "supply_setpoint", 60.0),
         pytest.param("bench", "supply_setpoint", 12.0, marks=pytest.mark.full),
     ],
 )
