@@ -45,6 +45,7 @@ FLOOR = 0.5
 IMPERFECT = 2.0
 """Percent: the level up to which trials have to name what they hide."""
 MACHINES = 40
+"""Drawn for the size of what such machines leave: it is known to about a tenth."""
 STRETCH = 1.0
 """s, the length of a stretch."""
 FOLDER = Path(__file__).parent / "limits"

@@ -1,7 +1,7 @@
 """What every model of a machine leaves beside noise, as a part of the statistics: a random input of each equation.
 
 Kennedy and O'Hagan (2001) put one random function between a simulator's output and the data. Here it sits where a
-model is wrong, in its equations: each has an unknown input that is drawn anew at knots 50 ms apart, linear in between,
+model is wrong, in its equations: each has an unknown input that is random at knots 50 ms apart, linear in between,
 of a standard deviation tau. Carried through the simulation to first order (H, libsms/estimation/shooting.hpp), the
 residual of a window has the covariance
 

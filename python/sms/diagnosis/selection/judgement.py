@@ -115,9 +115,8 @@ def _untenable(trial: Trial, data: Data) -> str:
         value, declared = trial.fitted.params[name], trial.fitted.hypothesis.start[name]
         beside = name != trial.effect.parameters[0]
         entry = data.rig.table[name]
-        in_full = (
-            entry.unit == "1" and value == entry.upper == 1.0
-        )  # a share: the law holds altogether
+        # A share of one is the end of its range by definition: the law holds altogether.
+        in_full = entry.unit == "1" and value == entry.upper == 1.0
         if name not in trial.fitted.movable and not in_full and not (beside and value == declared):
             said = format_quantity(value, entry.unit, name)
             return f"fits best at or beyond {said}, the end of what is plausible"
