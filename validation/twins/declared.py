@@ -62,6 +62,8 @@ TANK = (
 
 FLOW_MAP = 0.03
 """Half width, as a share of the flow, within which the core takes the valve's map to be known."""
+PRESSURES = ("chamber_pressure_lower", "chamber_pressure_upper", "tank_pressure")
+"""The signals of pressure sensors; on the platform with the leg's number behind."""
 PRESSURE_SENSORS = {"offset": 1.0e3, "gain": 0.0025}
 """Half widths within which the core takes their zero (Pa) and gain to be known, where nothing is declared."""
 
@@ -71,7 +73,7 @@ def pressure_sensors(signals: Sequence[str]) -> dict[str, float]:
     return {
         f"{signal}.{field}": half
         for signal in signals
-        if signal.startswith(("chamber_pressure", "tank_pressure"))
+        if signal.startswith(PRESSURES)
         for field, half in PRESSURE_SENSORS.items()
     }
 

@@ -265,7 +265,7 @@ OUT_OF_CATALOGUE: tuple[Effect, ...] = (
     _term("dragging_cable", "dragging_cable", "N/m", 2e3, 10.0),
     _term("check_valve_leak", "check_valve_leak", "kg/(s Pa)", 5e-8, 5e-10, rigs=ALL),
 )
-"""No catalogue entry describes these: the honest verdict is `unknown`."""
+"""No catalogue entry describes these: the right verdict is `unknown`."""
 
 EVERY = (NONE, *CATALOGUE, *OUT_OF_CATALOGUE)
 

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from validation.twins.air import Array
+from validation.twins.declared import PRESSURES
 from validation.twins.instruments import Channel, channel_of
 from validation.twins.measured import VirtualRig
 
@@ -107,7 +108,7 @@ def rig_file(
 def sensors_as_calibrated(signals: Sequence[str]) -> list[str]:
     """Rows for [parameters], of the sensors for which the core allows an error where nothing is declared."""
     rows = []
-    for stem in ("chamber_pressure_lower", "chamber_pressure_upper", "tank_pressure"):
+    for stem in PRESSURES:
         if any(signal.startswith(stem) for signal in signals):
             rows.append(f'sensor_offset_{stem} = {{ value = "0 Pa", uncertainty = "0 Pa" }}')
             rows.append(f"sensor_gain_{stem} = {{ value = 0.0, uncertainty = 0.0 }}")

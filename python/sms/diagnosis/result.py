@@ -157,7 +157,7 @@ class Symptom:
     noise: float
     """Of that, what no model could explain."""
     speaks: bool
-    """Whether it is more than two honest descriptions of one machine differ by."""
+    """Whether it is practically significant."""
     record: str
     begin: float
     end: float

@@ -92,7 +92,7 @@ class Case:
     before: LackOfFit
     after: LackOfFit
     tolerated: Array
-    """(channels,): mean square beyond the noise, in its units, that is not worth a word."""
+    """(channels,): mean square beyond the noise, in its units, that is not practically significant."""
     blind: Sequence[NotTestable]
     able: Sequence[Effect]
     """The effects that these records can show."""

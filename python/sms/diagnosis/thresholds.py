@@ -4,8 +4,8 @@ Convention: customary in statistics. Published: the dissertation. Blind trials: 
 (docs/trials.md), so that right causes pass and imitations do not. Judgement: an engineer's choice that nothing here
 measures. Run time, memory, numerics: what the computation asks for.
 
-What depends on the rig stands with it (estimation/kind.py: `honest`, `short`); what belongs to a least-squares fit with
-the fit (estimation/least_squares.py, block_statistics.py).
+What depends on the rig stands with it (estimation/kind.py: `practically_significant`, `short`); what belongs to a
+least-squares fit with the fit (estimation/least_squares.py, block_statistics.py).
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ STRETCH = 1.0
 ENDS = 0.1
 """s left out at either end of a record, where the smoother is one-sided and the spool starts from rest. Judgement."""
 TOLERANCE = 5.0
-"""Mean square beyond the noise's, in the worst equation, from which shares are worth a word. Blind trials.
+"""Mean square beyond the noise's, in the worst equation, from which shares are practically significant. Blind trials.
 
 Two fair descriptions of one machine differ by 1.5 in friction through rest; noise that is not white adds up to 4.
 """

@@ -63,7 +63,7 @@ class Kind:
     """None: the plant is known as a simulation only."""
     computed: Mapping[str, float] = field(default_factory=dict)
     """Outputs that a computer makes of the others' readings -> noise of a sample that is not declared, SI. They are no
-    readings, and hardly have a noise: less than what is declared, or this, is not worth a word."""
+    readings, and hardly have a noise: less than what is declared, or this, is not practically significant."""
     whitened: bool = True
     """Residuals are in units of the noise of a sample; else in the unit of the signal, and their noise is what differs
     between repeats."""
@@ -75,7 +75,8 @@ class Kind:
     """A run with all its samples compared, where windows leave some out; None where they do not."""
     short: float = 0.025
     """s: what differs over this time is noise; what lasts longer a model could explain."""
-    honest: tuple[float, float] = (0.15, 0.3)
-    """What two honest descriptions of one machine leave, as a share of the noise floor's mean square: over all outputs,
-    and of the one that is worst off. The form in which friction rises from rest, the flow through a valve that is
-    nearly closed, noise that lasts. Healthy machines of the trials leave 0.05 to 0.14, and 0.07 to 0.25."""
+    practically_significant: tuple[float, float] = (0.15, 0.3)
+    """From where an error is practically significant, as a share of the noise floor's mean square: over all outputs,
+    and of the one that is worst off. Two good models of one machine differ by so much: the form in which friction
+    rises from rest, the flow through a valve that is nearly closed, noise that lasts. Healthy machines of the trials
+    leave 0.05 to 0.14, and 0.07 to 0.25."""

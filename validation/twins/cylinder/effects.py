@@ -57,7 +57,7 @@ OUT_OF_CATALOGUE = (
     Effect("position_ripple", None, "N", True),
     Effect("friction_drift", None, "N", False),
 )
-"""Never drawn by default: the honest verdict on these is `unknown`."""
+"""Never drawn by default: the right verdict on these is `unknown`."""
 
 
 def find(name: str) -> list[Effect]:

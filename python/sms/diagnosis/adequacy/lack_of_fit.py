@@ -25,8 +25,8 @@ class LackOfFit:
     """Beyond the floor, on the records that were fitted."""
     validate: Array
     """The same on those that were not."""
-    honest: tuple[float, float]
-    """What two honest descriptions of one machine leave (kind.Kind.honest)."""
+    practically_significant: tuple[float, float]
+    """As kind.Kind has it."""
 
     @property
     def total(self) -> float:
@@ -44,7 +44,7 @@ def lack_of_fit(fitted: Fitted, data: Data) -> LackOfFit:
     seen, held = fitted.fit.residual, unseen(fitted, data)
     floor = 0.5 * (data.identify.floor(seen) + data.validate.floor(held))
     parts = _beyond(seen, data.identify, floor), _beyond(held, data.validate, floor)
-    return LackOfFit(floor, *parts, data.identify.kind.honest)
+    return LackOfFit(floor, *parts, data.identify.kind.practically_significant)
 
 
 def _beyond(residual: Array, runs: Runs, floor: Array) -> Array:

@@ -100,7 +100,7 @@ def excess(energy: Array) -> float:
 def tolerated(baseline: Fitted, data: Data) -> Array:
     """(channels,): mean square, in units of the noise, that a model may leave beyond it.
 
-    All that is declared uncertain moves the predictions; TOLERATED of that is not worth a word.
+    All that is declared uncertain moves the predictions; TOLERATED of that is not practically significant.
     """
     h, runs = baseline.hypothesis, data.identify
     uncertainty = np.array([h.known.get(n, 0.0) for n in h.free])
@@ -123,7 +123,7 @@ def nothing_left(left: Left, data: Data) -> bool:
     """
     if left.absolute:
         return all(left.excess(role) < LEAST_OF_NOISE for role in ROLES)
-    total, worst = data.identify.kind.honest
+    total, worst = data.identify.kind.practically_significant
     beyond = 0.5 * (left.identify.mean(axis=0) + left.validate.mean(axis=0)) - 1.0
     return float(beyond.mean()) < 2.0 * total and float(beyond.max()) < 2.0 * worst
 

@@ -1,7 +1,7 @@
 """What could still be hidden where nothing was found: of each effect, the size from which these records would show it.
 
 An effect is looked at once the error that it makes beyond what the free parameters can imitate is more than two fair
-descriptions of one machine differ by (kind.Kind.honest), and it is three standard errors at least.
+descriptions of one machine differ by (kind.Kind.practically_significant), and it is three standard errors at least.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple
     size = np.linalg.norm(reduced[: len(fitted.fit.residual)], axis=0)
     rows = len(fitted.fit.residual)
     level = np.sqrt(max(float(np.mean(fitted.fit.residual**2)), 1.0))
-    least = np.maximum(DETECTION * level, np.sqrt(2.0 * runs.kind.honest[0] * rows))
+    least = np.maximum(
+        DETECTION * level, np.sqrt(2.0 * runs.kind.practically_significant[0] * rows)
+    )
     found = []
     for effect, name, own in zip(effects, names, size, strict=True):
         largest = max(abs(end) for end in room_of(effect, fitted.params, data.rig))

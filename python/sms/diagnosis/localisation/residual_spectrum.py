@@ -39,7 +39,7 @@ def _symptom(runs: Runs, residual: Array, channel: int, floor: float) -> Symptom
         unit=runs.kind.units[name],
         rms=scale * float(np.sqrt(every)),
         noise=scale * floor,
-        speaks=every > (1.0 + runs.kind.honest[1]) * floor**2,
+        speaks=every > (1.0 + runs.kind.practically_significant[1]) * floor**2,
         record=runs.motions[worst.record].name,
         begin=float(time[worst.first] - time[0]),
         end=float(time[worst.first + worst.samples - 1] - time[0]),

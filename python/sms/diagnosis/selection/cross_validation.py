@@ -28,11 +28,11 @@ def objection(
 ) -> str:
     """Why the fitted records, held against each other, do not have the effect; empty if they do.
 
-    floor: mean square of the noise. It must help with 95 percent confidence, be worth more than what two honest
+    floor: mean square of the noise. It must help with 95 percent confidence, be worth more than what two
     descriptions of one machine differ by, and make no record worse by as much.
     """
     runs = data.identify
-    least = runs.kind.honest[0] * floor
+    least = runs.kind.practically_significant[0] * floor
     parts = _parts(trial.fit.residual - current.fit.residual, runs, least)
     before, after = predicted(current, parts) ** 2, predicted(trial, parts) ** 2
     counts = resampled(runs.record, runs.block, rng)

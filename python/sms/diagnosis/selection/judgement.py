@@ -105,8 +105,8 @@ def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
         return False
     if data.healthy is not None:
         return True
-    honest = data.validate.kind.honest[0]
-    return cross_validation.change_on_validation(trial.fitted, current, data) < honest
+    least = data.validate.kind.practically_significant[0]
+    return cross_validation.change_on_validation(trial.fitted, current, data) < least
 
 
 def _untenable(trial: Trial, data: Data) -> str:
