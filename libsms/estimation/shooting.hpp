@@ -20,6 +20,9 @@
 //
 //   z = z* - R^-1 Q' (de/dtheta) (theta - theta*)
 //
+// The slopes de/dz that were found there hold nearby too, and a residual alone is then one simulation or two in plain
+// numbers (the chord method). They are worked out again where they promise more than they keep, or a window is badly off.
+//
 // With a Jacobian, a window that is left badly off is searched from its guess as well.
 //
 // So a residual and its Jacobian are those of the parameters alone, windows are independent of each other, and a window
@@ -60,6 +63,7 @@ struct WindowOptions {
   // this share of it.
   double least_gain = 0.1;
   double least_share = 1e-3;
+  double enough(double chi_square) const { return least_gain + least_share * chi_square; }
 };
 
 // A window at an initial state.
@@ -127,12 +131,16 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // Window k with where its search begins.
   Window begun(const Machine<double>& params, std::size_t k) const;
 
-  // From where the window begins to its best initial state.
-  Shot shoot(const Machine<double>& params, const Window& w) const;
+  // From where window k begins, w, to its best initial state, by the slopes of the last Jacobian as far as they lead.
+  // exact: by those at the state itself in the end.
+  Shot shoot(const Machine<double>& params, const Window& w, std::size_t k, bool exact = false) const;
 
   // The better of two searches. One that begins where parameters far away have left it may end in a valley of its own,
   // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too.
-  Shot search(const Machine<double>& params, const Window& w) const;
+  Shot search(const Machine<double>& params, const Window& w, std::size_t k) const;
+
+  // Window k is begun from here on where this search has ended.
+  void anchor(const Shot& shot, std::size_t k) const;
 
   // Returns how the best initial state moves with each parameter (kStart x free).
   Eigen::MatrixXd differentiate(const Machine<double>& params, const std::vector<int>& free, const Window& w,
@@ -148,6 +156,7 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   mutable Machine<double> anchor_{}, last_{};    // parameters of the last Jacobian, of the last evaluation
   mutable std::vector<int> followed_;            // parameters of the last Jacobian
   mutable std::vector<Eigen::MatrixXd> follow_;  // how each window's start moves with them
+  mutable std::vector<Eigen::MatrixXd> slopes_;  // de/dz of each window where it is begun; empty before the first
   mutable std::vector<Eigen::VectorXd> found_;   // by the last evaluation
 };
 

@@ -33,6 +33,32 @@ void columns_of(const std::vector<ParameterJet>& jets, Eigen::MatrixXd* columns)
 
 bool is_finite(const Shot& shot) { return shot.start.allFinite() && shot.residual.allFinite(); }
 
+bool follow(const WindowSimulation& window, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& scale,
+            const WindowOptions& options, Shot* shot) {
+  constexpr int kMostSteps = 4;
+  constexpr double kDamping = 1e-6, kAsPromised = 0.5;
+  Eigen::VectorXd tried_residual(slopes.rows());
+  for (int k = 0; k < kMostSteps && shot->residual.allFinite(); ++k) {
+    const StartStep step = start_step(slopes, shot->residual, scale, kDamping);
+    const double cost = shot->residual.squaredNorm();
+    if (!(step.promised > options.enough(cost))) {
+      return cost < kBadlyOff * static_cast<double>(slopes.rows());
+    }
+    const Eigen::VectorXd tried = shot->start + step.move;
+    window.find_residual(tried, &tried_residual);
+    const double gain = cost - tried_residual.squaredNorm();
+    if (gain > 0.0) {
+      shot->start = tried;
+      shot->residual.swap(tried_residual);
+      shot->has_slopes = false;
+    }
+    if (!(gain > kAsPromised * step.promised)) {
+      return false;
+    }
+  }
+  return false;
+}
+
 // A state is tried in plain numbers, which are ten times cheaper; slopes are worked out where the search goes on from.
 Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
            const WindowOptions& options, int most_steps) {
@@ -44,7 +70,7 @@ Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Ei
     window.find_slopes(&shot);
     const StartStep step = start_step(shot.slopes, shot.residual, scale, damping);
     const double cost = shot.residual.squaredNorm();
-    const double enough = options.least_gain + options.least_share * cost;  // a gain that ends the search
+    const double enough = options.enough(cost);
     if (!(step.promised > enough)) {
       break;
     }

@@ -16,6 +16,14 @@ namespace estimation {
 // Of the windows of a problem, by so many threads.
 void in_parallel(int threads, std::size_t windows, const std::function<void(std::size_t)>& work);
 
+// Of a window's chi-square per row: more is badly off.
+constexpr double kBadlyOff = 4.0;
+
+// From the shot's state and its residual along slopes of a place nearby, while they keep what they promise. Whether they
+// led to the end: not where the window is badly off, because slopes that are turned by some percent then miss much.
+bool follow(const WindowSimulation& window, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& scale,
+            const WindowOptions& options, Shot* shot);
+
 // Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
 Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
            const WindowOptions& options, int most_steps = 12);
@@ -44,6 +52,7 @@ ShootingProblem<Plant>::ShootingProblem(Plant plant, const WindowOptions& option
     }
   }
   follow_.resize(windows_.size());
+  slopes_.resize(windows_.size());
   found_.resize(windows_.size());
 }
 
@@ -56,13 +65,13 @@ void ShootingProblem<Plant>::evaluate(const Machine<double>& params, const std::
   }
   in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     const Window w = begun(params, k);
-    Shot shot = jacobian != nullptr ? search(params, w) : shoot(params, w);
+    Shot shot = jacobian != nullptr ? search(params, w, k) : shoot(params, w, k);
     std::copy_n(shot.residual.data(), w.rows, residual->data() + w.row);
     found_[k] = place_of(shot, w);
     if (jacobian != nullptr) {
       Simulated(*this, params, w).find_slopes(&shot);
       follow_[k] = differentiate(params, free, w, shot, jacobian);
-      windows_[k].start = found_[k];
+      anchor(shot, k);
     }
   });
   last_ = params;
@@ -76,7 +85,7 @@ template <typename Plant>
 Eigen::VectorXd ShootingProblem<Plant>::errors(const Machine<double>& params) const {
   Eigen::VectorXd out(rows_);
   in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
-    const Shot shot = shoot(params, begun(params, k));
+    const Shot shot = shoot(params, begun(params, k), k);
     std::copy_n(shot.residual.data(), windows_[k].rows, out.data() + windows_[k].row);
   });
   return out;
@@ -87,7 +96,9 @@ void ShootingProblem<Plant>::settle(const Machine<double>& params) {
   followed_.clear();
   in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     const Window& w = windows_[k];
-    windows_[k].start = found_[k] = place_of(search(params, w), w);
+    const Shot shot = search(params, w, k);
+    found_[k] = place_of(shot, w);
+    anchor(shot, k);
   });
   last_ = params;
 }
@@ -96,7 +107,7 @@ template <typename Plant>
 RowMatrix ShootingProblem<Plant>::hidden(const Machine<double>& params, int knots) const {
   RowMatrix out(rows_, Plant::kHidden * knots);
   in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
-    Shot shot = shoot(params, begun(params, k));
+    Shot shot = shoot(params, begun(params, k), k);
     Simulated(*this, params, windows_[k]).find_slopes(&shot);
     differentiate_hidden(params, knots, windows_[k], shot, &out);
   });
@@ -191,14 +202,32 @@ class ShootingProblem<Plant>::Simulated : public WindowSimulation {
 };
 
 template <typename Plant>
-Shot ShootingProblem<Plant>::shoot(const Machine<double>& params, const Window& w) const {
-  return estimation::shoot(Simulated(*this, params, w), w.start, start_scales(), options_);
+void ShootingProblem<Plant>::anchor(const Shot& shot, std::size_t k) const {
+  windows_[k].start = found_[k];
+  if (shot.slopes.allFinite()) {
+    slopes_[k] = shot.slopes;
+  }
 }
 
 template <typename Plant>
-Shot ShootingProblem<Plant>::search(const Machine<double>& params, const Window& w) const {
-  Shot shot = shoot(params, w);
-  if (shot.residual.squaredNorm() > 4.0 * w.rows) {
+Shot ShootingProblem<Plant>::shoot(const Machine<double>& params, const Window& w, std::size_t k, bool exact) const {
+  const Simulated window(*this, params, w);
+  Shot shot;
+  shot.start = w.start;
+  if (slopes_[k].size() > 0) {
+    shot.residual.resize(w.rows);
+    window.find_residual(shot.start, &shot.residual);
+    if (follow(window, slopes_[k], start_scales(), options_, &shot) && !exact) {
+      return shot;
+    }
+  }
+  return estimation::shoot(window, shot.start, start_scales(), options_);
+}
+
+template <typename Plant>
+Shot ShootingProblem<Plant>::search(const Machine<double>& params, const Window& w, std::size_t k) const {
+  Shot shot = shoot(params, w, k, true);
+  if (shot.residual.squaredNorm() > kBadlyOff * w.rows) {
     constexpr int kMostSteps = 4;  // enough to see whether it leads elsewhere; the next search goes on from there
     Shot other = estimation::shoot(Simulated(*this, params, w), plant_.guess(w.record, w.first), start_scales(),
                                    options_, kMostSteps);

@@ -161,6 +161,26 @@ TEST_CASE("after a Jacobian a search begins where the best initial states have m
   CHECK(residual.squaredNorm() - best.squaredNorm() < 0.1 * (still.squaredNorm() - best.squaredNorm()));
 }
 
+TEST_CASE("slopes of the last Jacobian lead to initial states as good as their own do") {
+  sms_test::Random random;
+  const sms::Params<double> p;
+  auto near = problem_of(p, 620);
+  near.settle(p);
+  const double rows = near.rows();
+  Eigen::VectorXd residual, best;
+  for (int trial = 0; trial < 5; ++trial) {
+    sms::Params<double> moved = p;
+    moved.mass_flow_gain *= 1.0 + random.uniform(-3e-3, 3e-3);
+    moved.moving_mass *= 1.0 + random.uniform(-3e-3, 3e-3);
+    moved.valve_centre += random.uniform(-1e-3, 1e-3);
+    near.evaluate(moved, {}, &residual, nullptr);
+    problem_of(p, 620).evaluate(moved, {}, &best, nullptr);
+    CAPTURE(moved.mass_flow_gain);
+    CAPTURE(moved.valve_centre);
+    CHECK(residual.squaredNorm() < 1.02 * best.squaredNorm() + 0.01 * rows);
+  }
+}
+
 TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others do not") {
   const sms::Params<double> p;
   const Eigen::MatrixXd plain = simulated(p, 200, 1e-3);
