@@ -70,14 +70,21 @@ def write_bench(
     *,
     in_loop: bool = False,
     command: bool = True,
+    supply: bool = False,
 ) -> Path:
     """Two records to identify with and two to validate with, of a machine with these parameters.
 
-    in_loop: the rig file asks for a simulated controller; command: whether its output is recorded.
+    in_loop: the rig file asks for a simulated controller; command: whether its output is recorded; supply:
+    whether there is a sensor of the supply's pressure.
     """
     random = np.random.default_rng(seed)
+    noise = NOISE | ({"supply_pressure": 300.0} if supply else {})
     machine = Params(**({"proportional_gain": 8.0} | dict(truth)))
     text = RIG
+    if supply:
+        text = text.replace(
+            "\n[parameters]\n", 'supply_pressure = { noise = "300 Pa" }\n\n[parameters]\n'
+        )
     if in_loop:
         text = text.replace("\n[parameters]\n", 'setpoint = "setpoint"\n' + IN_LOOP)
     if not command:
@@ -89,7 +96,7 @@ def write_bench(
         signals = {"time": time[::EVERY], "valve_command": run["valve_command"][::EVERY]}
         if in_loop:
             signals["setpoint"] = wanted[::EVERY]
-        for name, size in NOISE.items():
+        for name, size in noise.items():
             clean = run.reading(name)[::EVERY]
             signals[name] = clean + random.normal(0.0, size, clean.size)
         write_record(folder / f"run{number}.csv", signals)

@@ -217,7 +217,7 @@ class Unexplained:
     """Signal -> rms beyond the noise up to which nothing is called wrong."""
     share_of_excess: float
     """Part of the baseline's mean squared error beyond the noise that is left, 0..1."""
-    worth_a_word: bool
+    practically_significant: bool
     """Whether it is more than is tolerated."""
     equation: str
     """In which equation most of it sits."""

@@ -246,13 +246,13 @@ def _unexplained(case: Case, hidden: Hidden) -> Unexplained:
     was = excess(energies(runs, unseen(case.baseline, case.data)))
     share = excess(energies(runs, unseen(case.final, case.data))) / max(was, 1e-12)
     floor = np.maximum(np.minimum(before.floor, after.floor), 1.0)
-    worth_a_word = not small(Left.by(case.final, case.data), case.tolerated)
+    practically_significant = not small(Left.by(case.final, case.data), case.tolerated)
     found = Unexplained(
         rms(left),
         rms(floor),
         rms(_as_residual(case)),
         float(np.clip(share, 0.0, 1.0)),
-        worth_a_word,
+        practically_significant,
         hidden.equation,
         hidden.shape.signal,
         hidden.shape,

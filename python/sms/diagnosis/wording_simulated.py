@@ -79,7 +79,7 @@ def remainder_in_words(left: Unexplained, units: Mapping[str, str]) -> str:
         f"The residual on the validation records is largest in {spaced(worst)}: {size} RMS at a noise of {noise}, "
         f"{format_percent(left.share_of_excess)} of the initial error beyond the noise"
     )
-    if not left.worth_a_word:
+    if not left.practically_significant:
         return f"{said}; that is within what the declared uncertainties make tolerable ({least})."
     along = spaced(left.along.split(" [")[0])
     return f"{said}. It sits in {block_in_words(left.equation)}, along {along}."

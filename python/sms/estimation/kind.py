@@ -61,6 +61,9 @@ class Kind:
     """Of every signal."""
     equations: Equations | None = None
     """None: the plant is known as a simulation only."""
+    read_directly: Mapping[str, str] = field(default_factory=dict)
+    """Block of the catalogue -> the signal that its equation gives without any other: an error of the flows or forces
+    does not reach it."""
     computed: Mapping[str, float] = field(default_factory=dict)
     """Outputs that a computer makes of the others' readings -> noise of a sample that is not declared, SI. They are no
     readings, and hardly have a noise: less than what is declared, or this, is not practically significant."""

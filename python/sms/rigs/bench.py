@@ -245,4 +245,5 @@ BENCH = Kind(
     shown=("extension", "valve_command"),
     menu=MENU,
     equations=EQUATIONS,
+    read_directly={"supply": "supply_pressure"},
 )

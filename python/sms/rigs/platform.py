@@ -276,4 +276,5 @@ PLATFORM = Kind(
     shown=(*of_legs("extension", "valve_command"),),
     menu=MENU,
     equations=EQUATIONS,
+    read_directly={"supply": "supply_pressure"},
 )

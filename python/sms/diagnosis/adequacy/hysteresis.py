@@ -40,7 +40,8 @@ class Hysteresis:
 
 
 def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
-    """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none."""
+    """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none, or where
+    the cause grows beside it."""
     gram, rows = np.zeros((3, 3)), 0
     for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
         played = _sensitivity(runs, at, effect)
@@ -55,8 +56,9 @@ def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
     (step, play), covariance = found
     error, play_error = np.sqrt(inflation_of(data) * np.diag(covariance))
     alone = fitted.params[effect.parameters[0]]
-    shift = abs(alone - data.rig.declared(effect.parameters[0]).value)
-    if play < APART * play_error or abs(step) < max(APART * error, APART_BY * shift):
+    shift = alone - data.rig.declared(effect.parameters[0]).value
+    lost = -float(step) if shift > 0.0 else float(step)
+    if play < APART * play_error or lost < max(APART * error, APART_BY * abs(shift)):
         return None
     return Hysteresis(
         effect, alone, (float(alone + step), float(error)), (float(play), float(play_error))

@@ -66,6 +66,10 @@ class Left:
         """(windows, channels)"""
         return self.identify if role == "identify" else self.validate
 
+    def of(self, channel: int) -> Left:
+        """In one signal."""
+        return Left(self.identify[:, [channel]], self.validate[:, [channel]], self.absolute)
+
     def excess(self, role: Role) -> float:
         """Mean square beyond the noise; beyond what the healthy machine's model leaves, where the unit is that."""
         energy = self.energy(role)

@@ -13,6 +13,7 @@ from scipy.stats import chi2, wilcoxon
 
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left
+from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Healthy, refitted
 from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial
@@ -48,6 +49,7 @@ def judge(
             continue
         after = Left.by(trial.fitted, data)
         trial.lower = float((before.by_window - after.by_window).sum())
+        by_score = trial.p_value
         if data.healthy is None:
             _by_windows(trial, before, after, weights, tried)
         else:
@@ -63,7 +65,20 @@ def judge(
             disagreement = ""
         untenable = _untenable(trial, data) or disagreement
         trial.reason = untenable or _leaves_much(trial, needed)
+        channel = channel_of_its_own(trial.effect, data)
+        if trial.reason and trial.lower > 0.0 and channel is not None and data.healthy is None:
+            trial.p_value, trial.cross_validated = by_score, False
+            _by_windows(trial, before.of(channel), after.of(channel), weights, tried)
+            trial.reason = _untenable(trial, data) or _leaves_much(trial, needed)
         trial.accepted = not trial.reason
+
+
+def channel_of_its_own(effect: Effect, data: Data) -> int | None:
+    """The compared signal that the effect's equation gives without any other, if there is one: what is wrong there is
+    its doing, however much is wrong elsewhere."""
+    runs = data.identify
+    signal = runs.kind.read_directly.get(effect.block)
+    return runs.channels.index(signal) if signal in runs.channels else None
 
 
 def _by_windows(trial: Trial, before: Left, after: Left, weights: Array, tried: int) -> None:

@@ -40,7 +40,7 @@ from sms.diagnosis.selection.finite_steps import (
     telling_windows,
 )
 from sms.diagnosis.selection.identifiability import raw_columns
-from sms.diagnosis.selection.judgement import ambiguity_group, judge
+from sms.diagnosis.selection.judgement import ambiguity_group, channel_of_its_own, judge
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.pairs import try_pairs
 from sms.diagnosis.thresholds import (
@@ -225,6 +225,14 @@ def _without_one(
             start[name] = final.params[name]
         without = fit(hypothesis, data.identify, start, discrepancy=data.allowed(data.identify))
         other = Left.by(without, data)
-        if all(left.excess(r) >= (1.0 - LEAST_SHARE) * other.excess(r) for r in ROLES):
+        channel = channel_of_its_own(members[0].effect, data)
+        counted = [(left, other)]
+        if channel is not None:
+            counted.append((left.of(channel), other.of(channel)))
+        if all(
+            now.excess(r) >= (1.0 - LEAST_SHARE) * then.excess(r)
+            for now, then in counted
+            for r in ROLES
+        ):
             return kept, without
     return None
