@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 
 def client_of(scheduler: str) -> Any:

@@ -21,7 +21,7 @@ from sms import _core
 from sms._core import Params
 from sms.arrays import Array
 from sms.dynamics import holding_force, linearise
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.motion.speed import steady_motion
 
 MEAN_PRESSURE = 333.5e3

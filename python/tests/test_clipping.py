@@ -101,7 +101,7 @@ def test_only_what_repeats_to_the_digit_at_its_extreme_looks_clipped() -> None:
         assert np.array_equal(stuck_at_extremes(coarse), coarse == coarse.min())
 
 
-@pytest.mark.parametrize("declared", [True, False])
+@pytest.mark.parametrize("declared", [True, pytest.param(False, marks=pytest.mark.full)])
 def test_clipped_readings_are_compared_with_nothing_and_the_others_judge(
     tmp_path: Path, declared: bool
 ) -> None:

@@ -96,6 +96,7 @@ def test_one_window_of_a_mixed_file_is_that_window(tmp_path: Path) -> None:
     assert abs(alone.samples - windows[last].samples) <= 1
 
 
+@pytest.mark.full
 def test_a_gain_is_found_from_the_closed_loop_while_open_loops_stand_beside(tmp_path: Path) -> None:
     gain = 9.6
     path = write_bench(tmp_path, 3, {"proportional_gain": gain}, in_loop=True)

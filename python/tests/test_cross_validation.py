@@ -74,6 +74,7 @@ def test_friction_at_high_speed_is_named_from_the_fitted_records_alone_and_said_
 
 
 @needs_fit
+@pytest.mark.full
 def test_what_the_fitted_records_disagree_on_is_not_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

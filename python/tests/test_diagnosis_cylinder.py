@@ -10,7 +10,7 @@ from sms import _core
 from sms.diagnosis import diagnose
 from sms.diagnosis.effects.catalogue import catalogue
 from sms.diagnosis.selection.excitation import CHECKS
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.write import write_record
 from sms.parameters import PARAMETERS
 from sms.report.diagnosis import report_html

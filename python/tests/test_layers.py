@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -76,3 +78,12 @@ def test_no_file_imports_itself_through_others() -> None:
     }
     assert sum(map(len, needs.values())) > len(files)
     TopologicalSorter(needs).prepare()  # CycleError names them
+
+
+def test_the_command_starts_without_what_takes_a_second() -> None:
+    """--help and the commands of the mechanism need neither."""
+    loaded = "import sys, sms.cli; print(*{'scipy', 'pandas', 'pint'} & set(sys.modules))"
+    told = subprocess.run(
+        [sys.executable, "-c", loaded], capture_output=True, text=True, check=True
+    )
+    assert not told.stdout.strip()

@@ -153,6 +153,7 @@ def test_reference_records_tell_combinations_of_numbers_better_than_each(tmp_pat
     assert right.params["sensor_gain_extension"] == pytest.approx(0.04, abs=0.01)
 
 
+@pytest.mark.full
 def test_with_reference_records_a_sensor_gain_is_found_that_other_numbers_can_make_up_for(
     tmp_path: Path,
 ) -> None:

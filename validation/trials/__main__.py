@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 import typer
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 from validation.trials import foreign, lung, machine_commands
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from rich.console import Console
 from sms.diagnosis import Diagnosis, diagnose
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.write import check_output_folder
 from sms.report.console import print_diagnosis
 from sms.report.files import write_diagnosis

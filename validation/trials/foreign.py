@@ -23,7 +23,7 @@ import typer
 from rich.console import Console
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.result import Cause, Member
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.write import write_text_atomically
 
 from validation.trials.scoring import LARGEST_CLASS

@@ -26,7 +26,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 from sms.diagnosis import Diagnosis, own
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.write import write_text_atomically
 
 from validation.trials.foreign import judged

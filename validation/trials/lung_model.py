@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from sms.arrays import Array
 from sms.diagnosis import own
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 CMH2O, ML = 98.0665, 1e-6
 """Pa, m^3"""

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.write import write_text_atomically
 
 from validation.trials.by_level import by_level, follow_up_shares, follow_up_table, level_table

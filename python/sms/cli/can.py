@@ -22,7 +22,7 @@ from sms.cli.can_bus import (
     progress_bar,
     recording,
 )
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 can_app = typer.Typer(
     help="A rig on a CAN bus: watch it, drive it, record it, set its parameters; and a virtual rig to try all on.",

@@ -19,7 +19,7 @@ from sms.cli.can_bus import (
     open_address,
     progress_bar,
 )
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 
 def register(can_app: typer.Typer) -> None:

@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms import _core
 from sms.cli import can, identify, limits, mechanism, noise, simulate, study, validate
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 app = typer.Typer(
     help="Pneumatic motion platform: what measured data says about its simulation.",

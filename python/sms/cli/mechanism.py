@@ -14,7 +14,7 @@ import typer
 
 from sms import StatusError, forward_kinematics, inverse_kinematics
 from sms._core import Params
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.kinematics import ForwardKinematics, InverseKinematics
 from sms.parameters import PARAMETERS
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sms.cli.mechanism import AsJson, Settings, bad_input
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.parameters import PARAMETERS
 from sms.progress import INTERRUPTED_CODE, progress_bar
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sms.cli.mechanism import AsJson, Settings, bad_input, machine
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.progress import progress_bar
 
 LOOPS = ("state_feedback", "pid")

@@ -12,7 +12,7 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.comparison.metrics import FrequencyResponse, Metrics, compare_signals, frequency_response
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.io.table import Table
 from sms.io.table_files import read_table
 from sms.io.units import array_to_si, si_unit_of, split_column_name

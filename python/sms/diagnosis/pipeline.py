@@ -27,8 +27,8 @@ from sms.diagnosis.selection.forward_selection import (
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
 from sms.diagnosis.simulated import diagnose_plant
+from sms.errors import InputError
 from sms.io import check as data_check
-from sms.io.errors import InputError
 from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.rigs.kinds import KINDS

@@ -75,7 +75,7 @@ from sms.diagnosis.wording_simulated import (
     still_hidden_in_words,
     words_of_inconsistency,
 )
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
 from sms.parameters import FLOW_MAP

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms import _core
+from sms.errors import InputError
 from sms.estimation.noise import noise_of
 from sms.estimation.run import Run, make_run
 from sms.estimation.windows import Runs
 from sms.io.check import check_record
 from sms.io.clipping import stuck_at_extremes
-from sms.io.errors import InputError
 from sms.io.records import Finding, load_record
 from sms.io.rig import Rig, load_rig
 from sms.rigs.kinds import KINDS

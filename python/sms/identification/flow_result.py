@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from sms import _core
+from sms.errors import InputError
 from sms.identification.flow import FlowFit
 from sms.identification.flow_map import MapCurve, SupplyComparison, compare_supplies, valve_map
 from sms.identification.flow_problem import COMPONENT, SYMBOL
 from sms.identification.flow_rig import supplies
-from sms.io.errors import InputError
 from sms.io.records import Finding
 
 COVERAGE = 2.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from sms.errors import InputError
 from sms.identification.flow_record import FlowRecord
 from sms.io.check import check_record, raise_if_unusable
-from sms.io.errors import InputError
 from sms.io.records import Finding, Record, load_record
 from sms.io.rig import RecordSource, Rig, load_rig
 

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from sms import _core
+from sms.errors import InputError
 from sms.identification.friction_fit import EQUATION, LAWS, LawFit, fit_law
 from sms.io.check import check_record, raise_if_unusable
-from sms.io.errors import InputError
 from sms.io.records import Finding, Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.parameters import PARAMETERS

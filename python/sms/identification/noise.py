@@ -16,7 +16,7 @@ import scipy.stats
 
 from sms import _core
 from sms.arrays import Array
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 SHORTEST = 64
 """Samples below which a spectrum says nothing."""

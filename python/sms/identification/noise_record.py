@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from sms.arrays import Array
+from sms.errors import InputError, did_you_mean
 from sms.identification.noise import Noise, Spectrum
-from sms.io.errors import InputError, did_you_mean
 from sms.io.table_files import read_table
 from sms.io.units import array_to_si, split_column_name
 

@@ -4,8 +4,8 @@ The road: `load_rig` reads the rig file and finds its records, `load_record` giv
 array in SI units, `check_rig` and `check_record` say what is wrong with them.
 """
 
+from sms.errors import InputError
 from sms.io.check import check_record, check_rig, raise_if_unusable
-from sms.io.errors import InputError
 from sms.io.records import Finding, Record, load_record
 from sms.io.rig import Declaration, RecordSource, Rig, load_rig
 from sms.io.signal_sources import SignalSource

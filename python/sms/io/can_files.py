@@ -16,7 +16,7 @@ from typing import Any
 
 import can
 
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.table import ending_of, is_packed
 
 #: what `record` writes

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from sms import _core
 from sms.arrays import Array
+from sms.errors import InputError, did_you_mean
 from sms.io.can_decode import Payloads
 from sms.io.can_files import read_frames
-from sms.io.errors import InputError, did_you_mean
 from sms.io.table import Remark
 from sms.io.units import split_column_name
 

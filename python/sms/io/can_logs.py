@@ -29,6 +29,7 @@ from cantools.database.can import Database, Message, Signal
 from numpy.typing import NDArray
 
 from sms.arrays import Array
+from sms.errors import InputError
 from sms.io.can_frames import (
     CLOCK,
     TIME,
@@ -39,7 +40,6 @@ from sms.io.can_frames import (
     lacks_value,
     load_dbc,
 )
-from sms.io.errors import InputError
 from sms.io.table import Remark, Table
 
 TELEMETRY = "Controller"  #: who sends the telemetry of the project's own bus

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.arrays import Array
+from sms.errors import InputError
 from sms.io import check_plant
-from sms.io.errors import InputError
 from sms.io.plausible import (
     extension_range,
     force_against_pressure,

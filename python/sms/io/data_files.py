@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from sms.io.errors import InputError, nearest
+from sms.errors import InputError, nearest
 from sms.io.schema import DataTable, place
 
 

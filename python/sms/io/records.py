@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.io.rig import RecordSource, Rig, Role
 from sms.io.signal_sources import SignalSource
 from sms.io.signals import SIGNAL_UNITS, without_leg

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Literal
 
 from sms import _core
+from sms.errors import InputError, did_you_mean, nearest
 from sms.io.data_files import beside, find_files
-from sms.io.errors import InputError, did_you_mean, nearest
 from sms.io.schema import (
     ControlTable,
     DataTable,

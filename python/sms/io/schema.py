@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, ValidationError
 
-from sms.io.errors import InputError, did_you_mean, nearest
+from sms.errors import InputError, did_you_mean, nearest
 
 
 def _text_or_number(value: object) -> str | float:

@@ -20,7 +20,7 @@ import pandas as pd
 import scipy.io
 from numpy.typing import NDArray
 
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.table import Table, ending_of, is_packed
 
 TEXT_ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")

@@ -13,7 +13,7 @@ import numpy as np
 import pint
 from numpy.typing import NDArray
 
-from sms.io.errors import InputError, nearest
+from sms.errors import InputError, nearest
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 _DIMENSIONLESS = ("", "1", "-")

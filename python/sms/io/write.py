@@ -16,8 +16,8 @@ import tomlkit
 from numpy.typing import ArrayLike
 from tomlkit.items import InlineTable
 
+from sms.errors import InputError, did_you_mean
 from sms.io.data_files import files_in
-from sms.io.errors import InputError, did_you_mean
 from sms.io.rig import Declaration, check_bounds, interpret
 from sms.io.schema import parse_rig_text, read_rig_text
 from sms.io.signals import column_name

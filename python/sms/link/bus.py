@@ -10,7 +10,7 @@ from typing import Any
 
 import can
 
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 
 BITRATE = 500_000  #: bit/s, that of libsms/firmware/sms.dbc
 #: The group of a bus between processes of one computer: frames leave it with a hop limit of 0.

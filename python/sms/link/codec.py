@@ -16,8 +16,8 @@ from cantools.database.can import Database, Message
 from cantools.database.namedsignalvalue import NamedSignalValue
 
 from sms import _core
+from sms.errors import InputError, did_you_mean
 from sms.io.can_frames import load_dbc, no_value
-from sms.io.errors import InputError, did_you_mean
 
 HOST, CONTROLLER = "Host", "Controller"
 CHECKED = ("crc", "alive", "session")  #: the signals that protect a command frame

@@ -16,7 +16,7 @@ from dataclasses import dataclass, fields
 
 import can
 
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 
 REPLAY_FROM = 2000  #: frames back, from which a replayed one is taken
 DELAY = 0.25  #: s; the longest delay

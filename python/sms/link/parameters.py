@@ -11,7 +11,7 @@ import can
 import numpy as np
 
 from sms import _core
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.io.units import to_si
 from sms.link.codec import Value, decode, message
 from sms.link.rig_link import ANSWER, TRIES, LinkError, NotConnectedError, RefusedError, RigLink

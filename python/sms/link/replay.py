@@ -9,8 +9,8 @@ from pathlib import Path
 
 import can
 
+from sms.errors import InputError
 from sms.io.can_files import read_frames
-from sms.io.errors import InputError
 from sms.link.codec import HOST, sent_by
 from sms.link.rig_link import BusError
 

@@ -14,7 +14,7 @@ from types import MappingProxyType
 import can
 
 from sms import Params, _core
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.io.rig import check_bounds
 from sms.io.units import to_si
 from sms.link.codec import HOST, sent_by

@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
 from sms.arrays import Array
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.io.table import Table
 from sms.io.table_files import read_table
 from sms.io.units import array_to_si, split_column_name

@@ -13,7 +13,7 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 
 def sine(

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms._core import OutOfWorkspaceError
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.kinematics import jacobian
 from sms.motion.deck import DeckMotion
 from sms.motion.limits import (

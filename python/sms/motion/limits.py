@@ -10,7 +10,7 @@ from sms import _core
 from sms._core import Params
 from sms.arrays import Array
 from sms.dynamics import holding_force
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.kinematics import inverse_kinematics, inverse_motion
 from sms.motion.deck import DeckMotion
 from sms.motion.speed import SpeedLimits, speed_limits

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from sms._core import Params
 from sms.arrays import Array
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.motion.deck import DeckMotion
 
 Complex = NDArray[np.complex128]

@@ -16,12 +16,12 @@ from scipy.signal import savgol_filter
 
 from sms import _core
 from sms.arrays import Array, Index
+from sms.errors import InputError
 from sms.estimation.kind import Kind
 from sms.estimation.least_squares import Free, Solution
 from sms.estimation.problem import Problem, WindowProblem
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
-from sms.io.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
 

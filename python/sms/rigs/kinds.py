@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from sms.errors import InputError
 from sms.estimation.kind import Kind
-from sms.io.errors import InputError
 from sms.io.rig import Rig
 from sms.io.signals import without_leg
 from sms.rigs.bench import BENCH

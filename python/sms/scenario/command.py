@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.schema import TextOrNumber
 from sms.kinematics import inverse_kinematics
 from sms.motion.deck import (

@@ -6,7 +6,7 @@ import numpy as np
 
 from sms._core import OutOfWorkspaceError
 from sms.arrays import Array
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.schema import TextOrNumber
 from sms.kinematics import inverse_kinematics
 from sms.motion.excitation import aprbs, chirp, sine, steps

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from sms._core import Params
+from sms.errors import InputError
 from sms.io.data_files import search_places
-from sms.io.errors import InputError
 from sms.io.rig import check_bounds
 from sms.io.schema import Table, TextOrNumber
 from sms.io.units import to_si

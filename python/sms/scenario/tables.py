@@ -13,7 +13,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from sms.io.errors import InputError, nearest
+from sms.errors import InputError, nearest
 from sms.io.schema import Table
 from sms.io.units import to_si
 

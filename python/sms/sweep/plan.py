@@ -19,7 +19,7 @@ from pydantic import Field
 from scipy.stats import norm, qmc
 
 from sms.arrays import Array
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.schema import Table, TextOrNumber
 from sms.io.units import interval_to_si
 from sms.parameters import PARAMETERS

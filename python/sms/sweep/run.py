@@ -23,7 +23,7 @@ import pandas as pd
 
 from sms import StatusError
 from sms.cluster import client_of
-from sms.io.errors import InputError
+from sms.errors import InputError
 from sms.io.write import write_parquet, write_text_atomically
 from sms.parameters import PARAMETERS
 from sms.scenario.command import command_of

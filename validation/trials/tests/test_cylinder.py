@@ -1,6 +1,6 @@
 """The blind trial as a test: at most 1 false name in 40 healthy draws, at least 38 of 40 hidden effects found.
 
-./dev test takes fixed seeds, ./dev test --full fresh ones; the seed and the confusion matrix are printed.
+./dev test --full takes fresh seeds, ./dev test a tenth of them, fixed; the seed and the confusion matrix are printed.
 """
 
 from __future__ import annotations
@@ -14,32 +14,33 @@ from validation.random_cases import SEED
 from validation.trials.cylinder import Outcome, confusion_matrix, run_trials, some_effect, summary
 
 COUNT = 40
+FEW = 4
 FIXED_SEED = 20000
 
 
-def trial(first: int) -> None:
+def trial(first: int, count: int) -> None:
     console = Console(width=160)
-    healthy = range(first, first + COUNT)
-    ill = range(first + COUNT, first + 2 * COUNT)
+    healthy = range(first, first + count)
+    ill = range(first + count, first + 2 * count)
     outcomes = run_trials(
         [*healthy, *ill],
         lambda s: "none" if s in healthy else some_effect(s),
         workers=os.cpu_count() or 1,
     )
-    console.print(f"seeds {first} to {first + 2 * COUNT - 1}")
+    console.print(f"seeds {first} to {first + 2 * count - 1}")
     console.print(confusion_matrix(outcomes))
     console.print(summary(outcomes))
-    assert sum(o.wrong_name for o in outcomes if o.hidden == "none") <= 1
-    assert sum(o.right for o in outcomes if o.hidden != "none") >= COUNT - 2
+    assert sum(o.wrong_name for o in outcomes if o.hidden == "none") <= count // COUNT
+    assert sum(o.right for o in outcomes if o.hidden != "none") >= count - 2 * count // COUNT
 
 
 def test_hidden_effects_are_found_and_health_is_left_alone() -> None:
-    trial(FIXED_SEED)
+    trial(FIXED_SEED, FEW)
 
 
 @pytest.mark.full
 def test_fresh_hidden_effects_are_found_and_health_is_left_alone() -> None:
-    trial(SEED % 10**6 + 10**6)
+    trial(SEED % 10**6 + 10**6, COUNT)
 
 
 def test_the_trial_itself_can_tell_right_from_wrong() -> None:

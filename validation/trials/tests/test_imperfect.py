@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sms.diagnosis.pipeline import read_and_check
+from sms.errors import InputError
 from sms.estimation.kind import Experiment
 from sms.estimation.run import make_run
-from sms.io.errors import InputError
 from sms.io.rig import load_rig
 from sms.rigs.kinds import KINDS
 from sms.rigs.tank import valve_of

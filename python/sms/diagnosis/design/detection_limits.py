@@ -24,12 +24,12 @@ from sms.diagnosis.hypothesis import Data, baseline_hypothesis
 from sms.diagnosis.selection.excitation import missing_excitation
 from sms.diagnosis.selection.forward_selection import Progress
 from sms.diagnosis.thresholds import DETECTION
+from sms.errors import InputError
 from sms.estimation.kind import Kind
 from sms.estimation.noise import noise_of
 from sms.estimation.nuisance import nuisance_at, project
 from sms.estimation.run import Run, make_run
 from sms.estimation.windows import Runs
-from sms.io.errors import InputError
 from sms.io.records import load_record
 from sms.io.rig import DataLayout, Rig, load_rig
 from sms.io.signal_sources import SignalSource

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from sms.diagnosis.selection.excitation import CHECKS, RUN_CHECKS
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.io.rig import Rig
 from sms.io.schema import Table, TextOrNumber, checked, parse_toml, place, read_text
 from sms.io.signals import KINDS, without_leg

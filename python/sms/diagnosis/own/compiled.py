@@ -17,7 +17,7 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.diagnosis.own.model import Equation, Values
-from sms.io.errors import InputError
+from sms.errors import InputError
 
 _NUMBERS = ctypes.POINTER(ctypes.c_double)
 

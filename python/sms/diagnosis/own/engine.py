@@ -24,11 +24,11 @@ from sms.diagnosis.own.shooting import ShootingProblem, Stretch
 from sms.diagnosis.result import Diagnosis, as_json
 from sms.diagnosis.selection.forward_selection import Progress
 from sms.diagnosis.thresholds import FEWEST_WINDOWS
+from sms.errors import InputError
 from sms.estimation.kind import Kind
 from sms.estimation.noise import sample_noise
 from sms.estimation.problem import WindowProblem
 from sms.estimation.run import Run
-from sms.io.errors import InputError
 from sms.io.rig import DataLayout, Declaration, Rig
 from sms.io.write import write_text_atomically
 from sms.parameters import Parameter

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.arrays import Array
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 
 Numbers = float | NDArray[np.float64]
 

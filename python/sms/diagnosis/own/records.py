@@ -12,7 +12,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.own.model import Input, Model, Output
 from sms.diagnosis.result import Finding
-from sms.io.errors import InputError, did_you_mean
+from sms.errors import InputError, did_you_mean
 from sms.io.rig import Role
 from sms.io.table_files import read_table
 from sms.io.units import array_to_si, split_column_name
