@@ -55,7 +55,7 @@ Eigen::VectorXd BenchPlant::state(const Params<double>& params, const Window& wi
   const int steps = detail::steps_over(record.step, longest_step_);
   RecordedCommand<double> drive(bench.params, laws_, record.command, record.hold, record.step, window.first, steps,
                                 record.step / steps);
-  const BenchState<double> state = begin(bench, start.data(), drive);
+  const BenchState<double> state = begin(bench, window, start.data(), drive);
   return vector_of(state);
 }
 

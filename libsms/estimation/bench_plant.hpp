@@ -2,7 +2,8 @@
 //
 // A window starts with what is free: extension, velocity, both pressures, the reservoir's pressure, the deflection of the
 // seals, and by how much the air in both chambers is warmer than the supplied. The spool needs none of it: it follows the
-// command alone, and is run up over the 50 ms before the window.
+// command alone, and is run up over the 50 ms before the window; nor does the lubricant's film, which follows the motion
+// that was recorded (film_at_start.hpp).
 //
 // The command is the record's (recorded_command.hpp), or that of a controller that is simulated with the rest
 // (bench_loop.hpp).
@@ -11,6 +12,7 @@
 #include <functional>
 #include <memory>
 
+#include "estimation/film_at_start.hpp"
 #include "estimation/hidden_inputs.hpp"
 #include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
@@ -93,7 +95,7 @@ class BenchPlant {
 
   // The state in which a window begins.
   template <typename S>
-  BenchState<S> begin(const Bench<S>& bench, const S* start, ValveDrive<S>& drive) const;
+  BenchState<S> begin(const Bench<S>& bench, const Window& window, const S* start, ValveDrive<S>& drive) const;
 
   // Writes the whitened errors of one sample and returns where the next begin.
   template <typename S>
@@ -147,8 +149,10 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
 }
 
 template <typename S>
-BenchState<S> BenchPlant::begin(const Bench<S>& bench, const S* start, ValveDrive<S>& drive) const {
+BenchState<S> BenchPlant::begin(const Bench<S>& bench, const Window& window, const S* start,
+                                ValveDrive<S>& drive) const {
   const Params<S>& p = bench.params;
+  const BenchRecord& record = of(window.record);
   const bool warm = temperature_is_state(p, laws_.chamber);
   BenchState<S> state = bench_at_rest(bench, start[0], S(0), S(2e5));
   state.velocity = start[1];
@@ -156,7 +160,7 @@ BenchState<S> BenchPlant::begin(const Bench<S>& bench, const S* start, ValveDriv
   state.actuator.upper = {start[3], warm ? S(p.air_temperature + start[7]) : p.air_temperature};
   state.actuator.supply_pressure = p.supply_line_resistance > S(0) ? start[4] : p.supply_pressure;
   state.actuator.deflection = start[5];
-  state.actuator.film = state.velocity;
+  state.actuator.film = film_at_start(p, record.extension, record.step, window.first, state.extension, state.velocity);
   drive.begin(state.actuator);
   return state;
 }
@@ -171,7 +175,7 @@ void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, 
   const S h(record.step / steps);
   const std::unique_ptr<ValveDrive<S>> driven_by = drive_of(bench, h);
   ValveDrive<S>& drive = *driven_by;
-  BenchState<S> state = begin(bench, start, drive);
+  BenchState<S> state = begin(bench, window, start, drive);
 
   BenchTerms<S> t{};
   const auto rates = [&](double at, const BenchState<S>& y, BenchState<S>& rate) {

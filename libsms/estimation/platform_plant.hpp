@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimation/film_at_start.hpp"
 #include "estimation/hidden_inputs.hpp"
 #include "estimation/leg_drives.hpp"
 #include "estimation/recorded_command.hpp"
@@ -191,7 +192,8 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
       leg.actuator.supply_pressure = start[12 + i];
     }
     leg.actuator.deflection = start[15 + i];
-    leg.actuator.film = leg.velocity;
+    leg.actuator.film = film_at_start(p, record.extension[static_cast<std::size_t>(i)], record.step, window.first,
+                                      leg.extension, leg.velocity);
   }
   auto drives = drives_of(machines, h);
   drives.begin(state);

@@ -181,6 +181,43 @@ TEST_CASE("slopes of the last Jacobian lead to initial states as good as their o
   }
 }
 
+TEST_CASE("the lubricant's film follows the motion before a window, to the speed of a swing that it has swung into") {
+  using Jet = est::ParameterJet;
+  sms_test::Random random;
+  for (int trial = 0; trial < 20; ++trial) {
+    sms::Params<double> p;
+    p.friction_lag = random.uniform(0.01, 0.2);
+    p.clock_skew_extension = random.uniform(0.0, 0.012);
+    p.sensor_gain_extension = random.uniform(-0.05, 0.05);
+    p.sensor_offset_extension = random.uniform(-1e-3, 1e-3);
+    const double omega = random.uniform(2.0, 12.0), swing = 0.05, turn = omega * p.friction_lag;
+    const int samples = 800, first = 600;
+    const auto place = [&](double t) { return 0.2 + swing * std::sin(omega * t); };
+    Eigen::VectorXd readings(samples);
+    for (int k = 0; k < samples; ++k) {
+      readings[k] = sms::extension_sensor(p).reading(place(kStep * k - p.clock_skew_extension));
+    }
+    readings[500] = std::nan("");
+    const double t = kStep * first, phase = omega * t;
+    const double film = swing * omega * (std::cos(phase) + turn * std::sin(phase)) / (1.0 + turn * turn);
+    const auto found = [&](const sms::Params<double>& with) {
+      return est::film_at_start(with, readings, kStep, first, place(t), swing * omega * std::cos(phase));
+    };
+    CAPTURE(p.friction_lag);
+    CAPTURE(omega);
+    CHECK(found(p) == doctest::Approx(film).epsilon(0.01).scale(swing * omega));
+
+    sms::Params<Jet> seeded = sms::cast<Jet>(p);
+    seeded.friction_lag.v[0] = 1.0;
+    const Jet slope = est::film_at_start(seeded, readings, kStep, first, Jet(place(t)), Jet(0.0));
+    sms::Params<double> less = p, more = p;
+    less.friction_lag -= 1e-6;
+    more.friction_lag += 1e-6;
+    CHECK(slope.a == doctest::Approx(found(p)).epsilon(1e-9));
+    CHECK(slope.v[0] == doctest::Approx((found(more) - found(less)) / 2e-6).epsilon(1e-4).scale(1e-2));
+  }
+}
+
 TEST_CASE("neutral effects leave a simulation unchanged to the bit, and others do not") {
   const sms::Params<double> p;
   const Eigen::MatrixXd plain = simulated(p, 200, 1e-3);

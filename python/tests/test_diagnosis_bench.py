@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import tomllib
 from importlib.resources import files
 from pathlib import Path
@@ -22,6 +23,7 @@ from sms.estimation.nuisance import Nuisance, project
 from sms.parameters import FLOW_MAP
 
 from validation.random_cases import draw
+from validation.twins.draw import draw as draw_machine
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 Array = NDArray[np.float64]
@@ -265,3 +267,15 @@ def test_a_dead_channel_is_a_data_fault(tmp_path: Path) -> None:
     file.write_text("\n".join([head, *(",".join(row) for row in cells)]) + "\n")
     answer = diagnose(path)
     assert (answer.verdict, answer.causes) == ("data-fault", ())
+
+
+@pytest.mark.full
+def test_a_film_that_is_late_has_its_lag(tmp_path: Path) -> None:
+    """What the piston did before a window counts: without it, this lag came out a quarter too long."""
+    sealed = tmp_path / "truth.json"
+    draw_machine("bench", 970014, tmp_path / "records", sealed, "friction_lag")
+    (hidden,) = json.loads(sealed.read_text(encoding="utf-8"))["effects"]
+    (cause,) = diagnose(tmp_path / "records" / "rig.toml").causes
+    assert cause.effect == "friction_lag"
+    (found,) = cause.parameters
+    assert found.value == pytest.approx(hidden["value"], rel=0.08)
