@@ -23,7 +23,8 @@
 // The slopes de/dz that were found there hold nearby too, and a residual alone is then one simulation or two in plain
 // numbers (the chord method). They are worked out again where they promise more than they keep, or a window is badly off.
 //
-// With a Jacobian, a window that is left badly off is searched from its guess as well.
+// With a Jacobian, a window that is left badly off is searched from its guess as well, and from the state with which any
+// parameters have fitted it best so far.
 //
 // So a residual and its Jacobian are those of the parameters alone, windows are independent of each other, and a window
 // is the natural block of whatever is resampled.
@@ -135,12 +136,16 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // exact: by those at the state itself in the end.
   Shot shoot(const Machine<double>& params, const Window& w, std::size_t k, bool exact = false) const;
 
-  // The better of two searches. One that begins where parameters far away have left it may end in a valley of its own,
-  // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too.
+  // The best of three searches. One that begins where parameters far away have left it may end in a valley of its own,
+  // a piston that sticks where it should slide; a window that keeps more than twice its noise begins at the guess too, and
+  // where it was once left with half as much.
   Shot search(const Machine<double>& params, const Window& w, std::size_t k) const;
 
   // Window k is begun from here on where this search has ended.
   void anchor(const Shot& shot, std::size_t k) const;
+
+  // What a search has found for window k, w.
+  void note(const Shot& shot, const Window& w, std::size_t k) const;
 
   // Returns how the best initial state moves with each parameter (kStart x free).
   Eigen::MatrixXd differentiate(const Machine<double>& params, const std::vector<int>& free, const Window& w,
@@ -158,6 +163,8 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   mutable std::vector<Eigen::MatrixXd> follow_;  // how each window's start moves with them
   mutable std::vector<Eigen::MatrixXd> slopes_;  // de/dz of each window where it is begun; empty before the first
   mutable std::vector<Eigen::VectorXd> found_;   // by the last evaluation
+  mutable std::vector<Eigen::VectorXd> best_;    // of all evaluations
+  mutable std::vector<double> least_;            // chi-square with that
 };
 
 }  // namespace estimation

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <utility>
 
 #include "estimation/shooting.hpp"
@@ -54,6 +55,8 @@ ShootingProblem<Plant>::ShootingProblem(Plant plant, const WindowOptions& option
   follow_.resize(windows_.size());
   slopes_.resize(windows_.size());
   found_.resize(windows_.size());
+  best_.resize(windows_.size());
+  least_.resize(windows_.size(), std::numeric_limits<double>::infinity());
 }
 
 template <typename Plant>
@@ -67,7 +70,7 @@ void ShootingProblem<Plant>::evaluate(const Machine<double>& params, const std::
     const Window w = begun(params, k);
     Shot shot = jacobian != nullptr ? search(params, w, k) : shoot(params, w, k);
     std::copy_n(shot.residual.data(), w.rows, residual->data() + w.row);
-    found_[k] = place_of(shot, w);
+    note(shot, w, k);
     if (jacobian != nullptr) {
       Simulated(*this, params, w).find_slopes(&shot);
       follow_[k] = differentiate(params, free, w, shot, jacobian);
@@ -97,7 +100,7 @@ void ShootingProblem<Plant>::settle(const Machine<double>& params) {
   in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     const Window& w = windows_[k];
     const Shot shot = search(params, w, k);
-    found_[k] = place_of(shot, w);
+    note(shot, w, k);
     anchor(shot, k);
   });
   last_ = params;
@@ -202,6 +205,16 @@ class ShootingProblem<Plant>::Simulated : public WindowSimulation {
 };
 
 template <typename Plant>
+void ShootingProblem<Plant>::note(const Shot& shot, const Window& w, std::size_t k) const {
+  found_[k] = place_of(shot, w);
+  const double left = shot.residual.squaredNorm();
+  if (left < least_[k]) {
+    least_[k] = left;
+    best_[k] = found_[k];
+  }
+}
+
+template <typename Plant>
 void ShootingProblem<Plant>::anchor(const Shot& shot, std::size_t k) const {
   windows_[k].start = found_[k];
   if (shot.slopes.allFinite()) {
@@ -226,12 +239,20 @@ Shot ShootingProblem<Plant>::shoot(const Machine<double>& params, const Window& 
 
 template <typename Plant>
 Shot ShootingProblem<Plant>::search(const Machine<double>& params, const Window& w, std::size_t k) const {
+  constexpr int kMostSteps = 4;  // enough to see whether it leads elsewhere; the next search goes on from there
+  constexpr double kBetter = 0.5;
   Shot shot = shoot(params, w, k, true);
+  const auto try_from = [&](const Eigen::VectorXd& from) {
+    Shot other = estimation::shoot(Simulated(*this, params, w), from, start_scales(), options_, kMostSteps);
+    if (other.residual.squaredNorm() < shot.residual.squaredNorm()) {
+      shot = std::move(other);
+    }
+  };
   if (shot.residual.squaredNorm() > kBadlyOff * w.rows) {
-    constexpr int kMostSteps = 4;  // enough to see whether it leads elsewhere; the next search goes on from there
-    Shot other = estimation::shoot(Simulated(*this, params, w), plant_.guess(w.record, w.first), start_scales(),
-                                   options_, kMostSteps);
-    return other.residual.squaredNorm() < shot.residual.squaredNorm() ? other : shot;
+    try_from(plant_.guess(w.record, w.first));
+  }
+  if (shot.residual.squaredNorm() > std::max(kBadlyOff * w.rows, least_[k] / kBetter)) {
+    try_from(best_[k]);
   }
   return shot;
 }

@@ -181,6 +181,27 @@ TEST_CASE("slopes of the last Jacobian lead to initial states as good as their o
   }
 }
 
+TEST_CASE("what a search has found once is found again after others") {
+  sms_test::Random random;
+  const sms::Params<double> truth;
+  const auto problem = problem_of(truth, 620);
+  const std::vector<int> free = {sms::index_of_mass_flow_gain, sms::index_of_valve_centre};
+  Eigen::VectorXd first, residual;
+  est::RowMatrix jacobian;
+  problem.evaluate(truth, free, &first, &jacobian);
+  for (int trial = 0; trial < 5; ++trial) {
+    sms::Params<double> other = truth;
+    other.coulomb_force *= random.uniform(0.3, 3.0);
+    other.valve_centre += random.uniform(-0.3, 0.3);
+    other.mass_flow_gain *= random.uniform(0.5, 2.0);
+    problem.evaluate(other, free, &residual, &jacobian);
+    problem.evaluate(truth, free, &residual, &jacobian);
+    CAPTURE(other.coulomb_force);
+    CAPTURE(other.valve_centre);
+    CHECK(residual.squaredNorm() < first.squaredNorm() + 4.0 * problem.rows());
+  }
+}
+
 TEST_CASE("the lubricant's film follows the motion before a window, to the speed of a swing that it has swung into") {
   using Jet = est::ParameterJet;
   sms_test::Random random;

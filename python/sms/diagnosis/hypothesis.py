@@ -16,7 +16,7 @@ from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.estimation.block_statistics import covariance_from, covariance_of, project_off
 from sms.estimation.discrepancy import Discrepancy
-from sms.estimation.least_squares import MOST_STEPS, Free, Solution, changed
+from sms.estimation.least_squares import MOST_STEPS, Free, Solution, WindowFit, changed
 from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
@@ -328,6 +328,25 @@ def refitted(fitted: Fitted, data: Data) -> Fitted:
             refitted_on(fitted, data.validate, before, data.allowed(data.validate)),
         )
     return data.refitted_of[id(fitted)][1]
+
+
+def looked_at_again(fitted: Fitted, data: Data) -> Fitted:
+    """The same model with the initial states that other models have found since, where they fit its windows better.
+
+    A window may have several: a piston sticks or slides. What the search alone gains is no merit of a model.
+    """
+    again = _with_better_starts(fitted, data.identify)
+    validated = refitted(fitted, data)
+    data.refitted_of[id(again)] = again, _with_better_starts(validated, data.validate)
+    return again
+
+
+def _with_better_starts(fitted: Fitted, runs: Runs) -> Fitted:
+    fit = fitted.fit
+    residual, jacobian = runs.problem.evaluate(fit.params, list(fitted.hypothesis.free))
+    if not isinstance(fit, WindowFit) or not residual @ residual < fit.residual @ fit.residual:
+        return fitted
+    return replace(fitted, fit=replace(fit, residual=residual, jacobian=jacobian))
 
 
 def refitted_on(

@@ -30,7 +30,7 @@ from sms.diagnosis.adequacy.residual_energy import (
     small,
 )
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, refitted, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, fit, looked_at_again, refitted, residual_of
 from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
 from sms.diagnosis.selection.finite_steps import (
     Step,
@@ -62,8 +62,10 @@ Progress = Callable[[str, float], None]
 
 def try_effects(
     current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
-) -> list[Trial]:
-    """Every effect on top of the model as it stands; those that promise most are fitted."""
+) -> tuple[Fitted, list[Trial]]:
+    """Every effect on top of the model as it stands; those that promise most are fitted. The model comes back with the
+    initial states that the trials have found.
+    """
     scores = score_effects(current, data, effects, rng)
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
@@ -93,6 +95,7 @@ def try_effects(
         and effect.block == effects[best].block
         and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
     }
+    current = looked_at_again(current, data)
     before = refitted(current, data).fit.residual ** 2
     trials = []
     for k, effect in enumerate(effects):
@@ -110,7 +113,7 @@ def try_effects(
         else:
             trial.reason = "promises less than others of this round, by slope and by finite steps"
         trials.append(trial)
-    return trials
+    return current, trials
 
 
 def _base(current: Fitted, data: Data) -> _core.Params:
@@ -180,7 +183,7 @@ def stepwise_selection(
         progress(
             f"round {number}: {len(remaining)} effects", 0.1 + 0.75 * number / (MOST_CAUSES + 1)
         )
-        trials = try_effects(current, data, remaining, rng)
+        current, trials = try_effects(current, data, remaining, rng)
         needed = NEARLY_ALL if small(here, least) else LEAST_SHARE
         judge(trials, current, data, original, needed, rng)
         members = ambiguity_group(trials, current, data)
