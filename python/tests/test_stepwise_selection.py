@@ -271,3 +271,13 @@ def test_a_droop_is_named_by_the_reading_of_the_supply_whatever_else_is_wrong(
     answer = diagnose(file)
     assert [cause.effect for cause in answer.causes] == ["supply_droop"]
     assert answer.causes[0].share < LEAST_SHARE
+
+
+@pytest.mark.full
+def test_what_is_beyond_the_plausible_beside_a_later_cause_is_no_cause(tmp_path: Path) -> None:
+    """A leak that opens at a pressure, which the catalogue does not have, was called kept heat and a leak; beside the
+    leak the heat was at the end of its range.
+    """
+    draw_machine("bench", 972003, tmp_path / "records", tmp_path / "truth.json", "check_valve_leak")
+    answer = diagnose(tmp_path / "records" / "rig.toml")
+    assert (answer.verdict, answer.causes) == ("unknown", ())

@@ -124,17 +124,24 @@ def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
     return cross_validation.change_on_validation(trial.fitted, current, data) < least
 
 
-def _untenable(trial: Trial, data: Data) -> str:
-    """Why the trial cannot be a cause, not even one among others; empty if there is nothing against it."""
-    for name in trial.effect.parameters:
-        value, declared = trial.fitted.params[name], trial.fitted.hypothesis.start[name]
-        beside = name != trial.effect.parameters[0]
+def implausible(effect: Effect, fitted: Fitted, data: Data) -> str:
+    """That an effect is as large in a model as it can be, or larger, if so."""
+    for name in effect.parameters:
+        value, declared = fitted.params[name], fitted.hypothesis.start[name]
+        beside = name != effect.parameters[0]
         entry = data.rig.table[name]
         # A share of one is the end of its range by definition: the law holds altogether.
         in_full = entry.unit == "1" and value == entry.upper == 1.0
-        if name not in trial.fitted.movable and not in_full and not (beside and value == declared):
+        if name not in fitted.movable and not in_full and not (beside and value == declared):
             said = format_quantity(value, entry.unit, name)
             return f"fits best at or beyond {said}, the end of what is plausible"
+    return ""
+
+
+def _untenable(trial: Trial, data: Data) -> str:
+    """Why the trial cannot be a cause, not even one among others; empty if there is nothing against it."""
+    if beyond := implausible(trial.effect, trial.fitted, data):
+        return beyond
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
     if trial.gain_interval[0] <= 0.0 and not trial.cross_validated:

@@ -40,7 +40,12 @@ from sms.diagnosis.selection.finite_steps import (
     telling_windows,
 )
 from sms.diagnosis.selection.identifiability import raw_columns
-from sms.diagnosis.selection.judgement import ambiguity_group, channel_of_its_own, judge
+from sms.diagnosis.selection.judgement import (
+    ambiguity_group,
+    channel_of_its_own,
+    implausible,
+    judge,
+)
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.pairs import try_pairs
 from sms.diagnosis.thresholds import (
@@ -199,6 +204,9 @@ def stepwise_selection(
             members[0].fitted = current
         remaining = [e for e in remaining if all(e is not m[0].effect for m in found_now)]
     found = [r.members for r in rounds if r.members]
+    while (beyond := _implausible(found, current, data)) is not None:
+        found = [m for m in found if m is not beyond]
+        current = _with_these(found, baseline, current, data)
     while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
         found, current = fewer
     return Outcome(current, rounds, found)
@@ -211,6 +219,28 @@ def _converged(fitted: Fitted, data: Data) -> Fitted:
     return fit(fitted.hypothesis, data.identify, fitted.params, slopes=slopes, discrepancy=allowed)
 
 
+def _implausible(found: Sequence[list[Trial]], final: Fitted, data: Data) -> list[Trial] | None:
+    """A cause that beside those that came later is at the end of what is plausible, and says so."""
+    for members in found:
+        if reason := implausible(members[0].effect, final, data):
+            for trial in members:
+                trial.accepted, trial.reason = False, f"beside other causes {reason}"
+            return members
+    return None
+
+
+def _with_these(
+    found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data
+) -> Fitted:
+    """The baseline with some of the causes of the final model, fitted from its values."""
+    hypothesis, start = baseline.hypothesis, baseline.params.copy()
+    for members in found:
+        hypothesis = extended(hypothesis, members[0].effect, data)
+    for name in hypothesis.free:
+        start[name] = final.params[name]
+    return fit(hypothesis, data.identify, start, discrepancy=data.allowed(data.identify))
+
+
 def _without_one(
     found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data
 ) -> tuple[list[list[Trial]], Fitted] | None:
@@ -221,12 +251,7 @@ def _without_one(
     left = Left.by(final, data)
     for members in found:
         kept = [m for m in found if m is not members]
-        hypothesis, start = baseline.hypothesis, baseline.params.copy()
-        for others in kept:
-            hypothesis = extended(hypothesis, others[0].effect, data)
-        for name in hypothesis.free:
-            start[name] = final.params[name]
-        without = fit(hypothesis, data.identify, start, discrepancy=data.allowed(data.identify))
+        without = _with_these(kept, baseline, final, data)
         other = Left.by(without, data)
         channel = channel_of_its_own(members[0].effect, data)
         counted = [(left, other)]
