@@ -5,8 +5,7 @@
 //
 //   w = (x - y) / lag,    y' = (x - y) / lag
 //
-// so that nothing is differentiated. An error of 0.1 m/s in w, forgotten after a lag of 0.1 s, made lags come out a
-// quarter too long.
+// so that nothing is differentiated. With the piston's speed in its place a lag of 0.1 s comes out a quarter too long.
 #pragma once
 
 #include <algorithm>

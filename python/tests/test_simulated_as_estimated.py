@@ -32,6 +32,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sms.rigs.bench
+import sms.rigs.platform
+import sms.rigs.tank
 from numpy.typing import NDArray
 from sms import Params, _core, simulate_bench, simulate_platform, simulate_tank
 from sms.diagnosis.effects.catalogue import Effect, catalogue
@@ -62,6 +65,13 @@ REST, MOVES = 0.2, 0.8
 """s: at rest, of which the first 0.1 s are before the window and the rest in it; then in motion."""
 
 
+LONGEST_STEPS = {
+    "tank": sms.rigs.tank.LONGEST_STEP,
+    "bench": sms.rigs.bench.LONGEST_STEP,
+    "platform": sms.rigs.platform.LONGEST_STEP,
+}
+
+
 @dataclass(frozen=True)
 class Setting:
     """One rig, its valves driven by a recorded command or by a simulated controller."""
@@ -74,14 +84,14 @@ class Setting:
     @property
     def period(self) -> float:
         """s, of the controller and of the integration: the longest step that the estimation takes."""
-        return 2.5e-3 if self.kind == "platform" else 1e-3
+        return LONGEST_STEPS[self.kind]
 
     @property
     def every(self) -> int:
         """Control periods in a sample of the record."""
         if self.law is not None:
             return 1
-        return 4 if self.kind == "platform" else 10
+        return round(0.01 / self.period)
 
     @property
     def same(self) -> float:

@@ -154,10 +154,8 @@ def _kind_of(model: Model, window: float) -> Kind:
         menu=(),
         units=signals | {"time": "s"},
         short=0.0,
-        practically_significant=(
-            0.3,
-            0.6,
-        ),  # wider than that of machines whose simulations were held against others
+        # Wider than that of machines whose simulations were held against others.
+        practically_significant=(0.3, 0.6),
     )
 
 
