@@ -19,7 +19,7 @@ from sms.estimation.coloured_noise import Colour, colour_of, coloured_meat
 from sms.parameters import PARAMETERS
 
 BAD_CONDITION = 1e4
-"""Condition number beyond which two parameters are nearly one; exact derivatives reach 1e7."""
+"""Condition number beyond which two parameters are nearly collinear; exact derivatives reach 1e7."""
 LIMIT_95 = float(chi2.ppf(0.95, 1))
 
 
@@ -99,8 +99,8 @@ class Estimate:
                 said.append(f"{f.name} ended at its bound, {value:g}: no estimate")
         if self.condition > BAD_CONDITION:
             said.append(
-                f"condition number {self.condition:.2g}: some parameters are nearly one to these "
-                "records; see the correlation map"
+                f"condition number {self.condition:.2g}: some parameters are nearly collinear on "
+                "these records; see the correlation map"
             )
         if not self.converged:
             said.append(f"the fit did not converge in {self.iterations} steps")

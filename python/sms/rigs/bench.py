@@ -12,7 +12,7 @@ from sms.arrays import Array
 from sms.estimation.kind import Equations, Experiment, Kind
 from sms.estimation.run import Run
 from sms.io.rig import Rig
-from sms.rigs.pneumatic import NOTHING, in_windows, record_of_simulation
+from sms.rigs.pneumatic import NOTHING, READ_DIRECTLY, in_windows, record_of_simulation
 
 LONGEST_STEP = 1e-3
 """s: of the integration. At 2.5 ms a piston that stops chatters over the kink of its friction; at 1.25 ms hardly."""
@@ -245,5 +245,5 @@ BENCH = Kind(
     shown=("extension", "valve_command"),
     menu=MENU,
     equations=EQUATIONS,
-    read_directly={"supply": "supply_pressure"},
+    read_directly=READ_DIRECTLY,
 )

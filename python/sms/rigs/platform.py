@@ -15,7 +15,7 @@ from sms.estimation.problem import Problem, WindowProblem
 from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import LEGS, of_legs
-from sms.rigs.pneumatic import NOTHING, in_windows, record_of_simulation
+from sms.rigs.pneumatic import NOTHING, READ_DIRECTLY, in_windows, record_of_simulation
 
 LONGEST_STEP = 2.5e-3
 """s: of the integration. Under the platform a piston carries a hundred kilograms, and stops gently."""
@@ -276,5 +276,5 @@ PLATFORM = Kind(
     shown=(*of_legs("extension", "valve_command"),),
     menu=MENU,
     equations=EQUATIONS,
-    read_directly={"supply": "supply_pressure"},
+    read_directly=READ_DIRECTLY,
 )

@@ -18,6 +18,8 @@ WINDOW = 1.0
 """s: length of a window."""
 NOTHING: Array = np.empty(0)
 """A signal that was not recorded."""
+READ_DIRECTLY = {"supply": "supply_pressure"}
+"""Kind.read_directly where a valve feeds the rig: nothing else reaches the sensor of the supply but by its line."""
 
 
 class InWindows(TypedDict):

@@ -16,7 +16,7 @@ from sms.estimation.run import Run
 from sms.estimation.run import make_run as make_any_run
 from sms.io.records import Record
 from sms.io.rig import Rig
-from sms.rigs.pneumatic import record_of_simulation
+from sms.rigs.pneumatic import READ_DIRECTLY, record_of_simulation
 
 SHORTEST, LONGEST, PER_RECORD = 1.0, 5.0, 5.0
 """s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does,
@@ -243,5 +243,5 @@ TANK = Kind(
     menu=MENU,
     equations=EQUATIONS,
     make_run=make_run,
-    read_directly={"supply": "supply_pressure"},
+    read_directly=READ_DIRECTLY,
 )
