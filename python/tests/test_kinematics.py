@@ -180,7 +180,7 @@ def test_many_rows_on_all_cores_are_what_one_row_is() -> None:
 
 def archive() -> Path | None:
     """The libsms.a of `./dev build`."""
-    file = ROOT / "build" / "dev" / "libsms" / "libsms.a"
+    file = ROOT / "build" / "package" / "libsms" / "libsms.a"
     return file if file.is_file() else None
 
 
@@ -201,7 +201,7 @@ int main(void) {
 """
 
 
-@pytest.mark.skipif(archive() is None, reason="no build/dev here; run ./dev build")
+@pytest.mark.skipif(archive() is None, reason="no build/package here; run ./dev build")
 def test_a_loop_in_c_gives_the_same_bits(tmp_path: Path) -> None:
     source, program = tmp_path / "loop.c", tmp_path / "loop"
     source.write_text(C_LOOP)

@@ -2,7 +2,7 @@
 
     python -m validation.firmware.faults [--write]
 
-Runs build/dev/libsms/firmware/tests/sms_fault_table, the application on a bench. Exit code 1 when a fault is not as
+Runs build/package/libsms/firmware/tests/sms_fault_table, the application on a bench. Exit code 1 when a fault is not as
 docs/faults.md states it. --write puts the table into that page.
 """
 
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = ROOT / "build" / "dev" / "libsms" / "firmware" / "tests" / "sms_fault_table"
+PROGRAM = ROOT / "build" / "package" / "libsms" / "firmware" / "tests" / "sms_fault_table"
 PAGE = ROOT / "docs" / "faults.md"
 BEGIN, END = "<!-- begin: python -m validation.firmware.faults -->\n", "<!-- end -->\n"
 
