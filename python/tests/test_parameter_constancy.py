@@ -11,6 +11,7 @@ import pytest
 from sms import _core
 from sms.diagnosis.adequacy.hysteresis import after_play, hysteresis
 from sms.diagnosis.adequacy.parameter_constancy import inconstancy
+from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.adequacy.subset_estimates import column_of
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
@@ -29,10 +30,16 @@ pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without 
 
 
 def fitted_to(
-    folder: Path, kind: str, hidden: str, seed: int, cause: str, multiple: float = 3.0
+    folder: Path,
+    kind: str,
+    hidden: str,
+    seed: int,
+    cause: str,
+    multiple: float = 3.0,
+    imperfection: float = 0.0,
 ) -> tuple[Data, Fitted]:
     """The core with a cause, fitted to records in which `hidden` is hidden."""
-    draw(kind, seed, folder / "rig", folder / "truth.json", hidden, multiple)
+    draw(kind, seed, folder / "rig", folder / "truth.json", hidden, multiple, imperfection)
     rig = load_rig(folder / "rig" / "rig.toml")
     read, _ = read_and_check(rig)
     data, effects = make_data(rig, read), effects_of(rig)
@@ -53,10 +60,19 @@ def test_a_leak_that_opens_at_a_pressure_is_another_law(tmp_path: Path) -> None:
     assert law.high[0] > 1.2 * law.low[0] > 0.0
 
 
+def test_on_a_machine_whose_flow_is_off_a_leak_of_another_size_in_each_half_keeps_its_law(
+    tmp_path: Path,
+) -> None:
+    leak = "fitting_leakage of lower"
+    data, fitted = fitted_to(tmp_path, "bench", "fitting_leakage:lower", SEED, leak, 3.0, 2.0)
+    assert Left.by(fitted, data).excess("identify") > 0.1
+    assert inconstancy(fitted, fitted.hypothesis.causes[0], data) is None
+
+
 @pytest.mark.full
 def test_of_three_legs_each_counts_by_its_own_pressure(tmp_path: Path) -> None:
     leak = "fitting_leakage of lower"
-    data, fitted = fitted_to(tmp_path, "platform", "check_valve_leak", 710_003, leak)
+    data, fitted = fitted_to(tmp_path, "platform", "check_valve_leak", 710_003, leak, multiple=10.0)
     law = inconstancy(fitted, fitted.hypothesis.causes[0], data)
     assert law is not None
     assert law.signal == "chamber_pressure_lower [Pa]"

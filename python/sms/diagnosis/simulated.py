@@ -64,7 +64,6 @@ from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
 from sms.diagnosis.selection.stepwise import Progress, stepwise_selection
-from sms.diagnosis.thresholds import UNKNOWN_SHARE
 from sms.diagnosis.wording import data_fault
 from sms.diagnosis.wording_simulated import (
     conclusion,
@@ -160,8 +159,7 @@ def investigate(
     adequate = enough(outcome.final)
     found = law = None
     if outcome.found:
-        was, left = (Left.by(f, data).excess("validate") for f in (baseline, outcome.final))
-        law = inconstancy_of(outcome, data, adequate or left < UNKNOWN_SHARE * was)
+        law = inconstancy_of(outcome, data, adequate)
         progress("estimating sizes beside what no parameter explains", 0.8)
         final = _with_discrepancy(outcome.final, data)
         outcome = replace(outcome, final=final, named=law is None)

@@ -58,8 +58,7 @@ TELLS_APART = 3.0
 MOST_CAUSES = 4
 """More are not named. Judgement: with so many terms something always fits."""
 UNKNOWN_SHARE = 0.2
-"""Of the systematic part of the baseline's error: with more left, the verdict is unknown on a cylinder, and on a
-simulated rig a cause is asked whether it follows another law. Judgement."""
+"""Of the systematic part of the baseline's error: with more left, the verdict is unknown on a cylinder. Judgement."""
 UNKNOWN_OF_NOISE = 0.05
 """Least systematic error, as a share of the noise floor's square, for the verdict unknown. Judgement."""
 UNKNOWN_CHANCE = 0.005
@@ -108,11 +107,10 @@ The more, the further the real law is from the core's.
 # ---- Parameter constancy and hysteresis ------------------------------------------------------------
 
 APART = 10.0
-"""Standard errors between the halves' sizes from which a law counts as another one. Blind trials."""
+"""Standard errors by which a play is there, and by which a cause shrinks beside it. Blind trials."""
 APART_BY = 0.2
-"""Of the size itself, besides. Judgement: no law of friction or flow is right to the last tenth everywhere."""
-APART_IN_TIME = 0.15
-"""The same between halves of the moments. Blind trials: right causes leave 0.1."""
+"""Of the size itself: how far the sizes of one cause are apart, at the least, in a law of its own. Judgement: no law of
+friction or flow is right to the last tenth everywhere."""
 PLAY = 0.02
 """V to either side, for which the sensitivity is taken. Judgement: above a command's noise, below a dead band."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sms.diagnosis.adequacy.hysteresis import Hysteresis, hysteresis
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy, inconstancy
+from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.selection.candidates import Trial
@@ -13,14 +14,25 @@ from sms.diagnosis.selection.outcome import Outcome
 def inconstancy_of(outcome: Outcome, data: Data, adequate: bool) -> Inconstancy | Hysteresis | None:
     """Of the first class in which nothing is what it is called: how that shows of the one that comes nearest."""
     for members in outcome.found:
-        laws = (
-            _not_as_named(m, outcome.final if m is members[0] else m.fitted, data, adequate)
-            for m in members
-        )
-        nearest = next(laws)
-        if nearest is not None and all(law is not None for law in laws):
-            return nearest
+        nearest, *others = members
+        law = _not_as_named(nearest, outcome.final, data, adequate)
+        if law is not None and not any(
+            _stands(m, law, outcome.final, data, adequate) for m in others
+        ):
+            return law
     return None
+
+
+def _stands(
+    member: Trial, law: Inconstancy | Hysteresis, nearest: Fitted, data: Data, adequate: bool
+) -> bool:
+    """Whether another of the class is what it is called, and leaves less than the nearest one with that other law."""
+    if _not_as_named(member, member.fitted, data, adequate) is not None:
+        return False
+    if isinstance(law, Hysteresis):
+        return True
+    its, left = (Left.by(f, data).excess("validate") for f in (member.fitted, nearest))
+    return its < (1.0 - law.takes) * left
 
 
 def _not_as_named(
