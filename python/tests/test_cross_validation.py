@@ -26,7 +26,7 @@ BENDING = next(e for e in catalogue("bench") if e.id == "exponential_friction")
 
 def test_a_part_is_predicted_with_the_size_that_the_others_ask_for() -> None:
     """A linear problem: one step is the whole refit, which is done here the long way."""
-    random = draw("crosswise")
+    random = draw("cross_validation")
     columns, target = random.normal(size=(90, 2)), random.normal(size=90)
     parts = np.repeat(np.arange(3), 30)
     known = 0.1  # half width of the viscous friction, declared as 1.0
@@ -61,7 +61,7 @@ def test_friction_at_high_speed_is_named_from_the_fitted_records_alone_and_said_
     monkeypatch.setattr(plant_support, "setpoint", _slow_aside)
     answer = diagnose(plant_support.write_bench(tmp_path, 3, HIDDEN))
     (cause,) = answer.causes
-    assert (cause.effect, cause.crosswise) == ("exponential_friction", True)
+    assert (cause.effect, cause.cross_validated) == ("exponential_friction", True)
     found = cause.parameters[0]
     assert found.value == pytest.approx(2.0, abs=max(3.0 * found.standard_error, 0.1))
     said = [text for text in answer.conclusion if "records are insensitive to it" in text]

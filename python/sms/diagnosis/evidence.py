@@ -103,7 +103,7 @@ def cause_from(
         share=first.share[0],
         share_low=first.share[1],
         share_high=first.share[2],
-        crosswise=first.cross_validated,
+        cross_validated=first.cross_validated,
     )
 
 

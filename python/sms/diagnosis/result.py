@@ -63,7 +63,7 @@ class Cause:
     share_low: float = 0.0
     share_high: float = 0.0
     """95 percent interval of the share, over resampled windows."""
-    crosswise: bool = False
+    cross_validated: bool = False
     """Whether the validation records are insensitive to it: judged by cross-validation within the identify records."""
 
 

@@ -189,8 +189,8 @@ def conclusion(
     """What an engineer would conclude, a sentence each; `nearest` is the best candidate for an unknown."""
     out = []
     if verdict in ("cause", "class", "combination"):
-        out += [judged_by_cross_validation(c) for c in causes if c.crosswise]
-        out += [] if all(c.crosswise for c in causes) else [_worth(gain)]
+        out += [judged_by_cross_validation(c) for c in causes if c.cross_validated]
+        out += [] if all(c.cross_validated for c in causes) else [_worth(gain)]
         shares = format_percent(max(0.0, 1.0 - max(after.total, 0.0) / max(before.total, 1e-12)))
         out.append(f"The extended model explains {shares} of the error beyond the noise.")
         out.append(chosen_again(causes, "windows"))

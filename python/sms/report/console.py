@@ -102,7 +102,7 @@ def _causes(diagnosis: Diagnosis) -> Padding | None:
             )
         if len(cause.alternatives) > 0:
             table.add_row("", Text("not distinguishable by these signals", style="dim italic"), "")
-        if cause.crosswise:
+        if cause.cross_validated:
             table.add_row("", Text(INSENSITIVE, style="dim italic"), "")
     return _block(table)
 

@@ -133,7 +133,7 @@ def _card(number: int, cause: Cause, diagnosis: Diagnosis) -> str:
         f"{_amounts(cause)}{paragraphs([cause.explanation])}"
     )
     note = f'<p class="small"><code>{esc(identifier)}</code> · {_significance(cause)}</p>'
-    if cause.crosswise:
+    if cause.cross_validated:
         about += paragraphs([f"{capital(INSENSITIVE)}."])
     evidence = _consistency(cause, diagnosis.records) + _against(cause, diagnosis)
     columns = (about + evidence + note, _members(cause)) if several else (about + note, evidence)
