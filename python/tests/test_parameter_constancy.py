@@ -9,10 +9,11 @@ from typing import cast
 import numpy as np
 import pytest
 from sms import _core
+from sms.arrays import Array
 from sms.diagnosis.adequacy.hysteresis import after_play, hysteresis
-from sms.diagnosis.adequacy.parameter_constancy import inconstancy
+from sms.diagnosis.adequacy.parameter_constancy import Sizes, inconstancy
 from sms.diagnosis.adequacy.residual_energy import Left
-from sms.diagnosis.adequacy.subset_estimates import column_of
+from sms.diagnosis.adequacy.subset_estimates import column_of, linear
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
 from sms.diagnosis.localisation.activity import activity, own_signals
@@ -24,6 +25,7 @@ from sms.estimation.windows import Runs
 from sms.io.rig import load_rig
 
 from validation.random_cases import SEED
+from validation.random_cases import draw as random_draw
 from validation.twins.draw import draw
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
@@ -77,6 +79,24 @@ def test_of_three_legs_each_counts_by_its_own_pressure(tmp_path: Path) -> None:
     assert law is not None
     assert law.signal == "chamber_pressure_lower [Pa]"
     assert law.high[0] > law.low[0] > 0.0
+
+
+def test_what_own_sizes_take_is_what_a_regression_with_them_takes() -> None:
+    """Against numpy's least squares: one size for all rows, and one for each of four parts."""
+    random = random_draw("own_sizes")
+    rows = 200
+    part = random.integers(0, 4, rows)
+    columns = random.standard_normal(rows)[:, None] * (part[:, None] == np.arange(4))
+    residual = -columns @ random.uniform(0.5, 2.0, 4) + random.standard_normal(rows)
+    stacked = np.column_stack([columns, residual])
+    found = linear(stacked.T @ stacked, rows)
+    assert found is not None
+
+    def left(design: Array) -> float:
+        return float(np.linalg.lstsq(design, residual, rcond=None)[1][0])
+
+    taken = 1.0 - left(columns) / left(columns.sum(axis=1, keepdims=True))
+    assert Sizes(*found).takes(rows) == pytest.approx(taken, rel=1e-9)
 
 
 # ---- when a cause acts ---------------------------------------------------------------------------

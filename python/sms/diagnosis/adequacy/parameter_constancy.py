@@ -69,7 +69,7 @@ def _by_windows(fitted: Fitted, effect: Effect, data: Data) -> Iterator[Inconsta
     parts = parts_of(fitted, effect, data)
     rows = sum(int(part.rows.sum()) for part in parts)
 
-    def sizes(signal: str, cuts: Array) -> _Sizes | None:
+    def sizes(signal: str, cuts: Array) -> Sizes | None:
         found = [
             _together([p.size(np.digitize(p.mean[signal], cuts, right=True) == k) for p in parts])
             for k in range(len(cuts) + 1)
@@ -77,7 +77,7 @@ def _by_windows(fitted: Fitted, effect: Effect, data: Data) -> Iterator[Inconsta
         if any(f is None for f in found):
             return None
         value, error = np.array([f for f in found if f is not None]).T
-        return _Sizes(value, np.diag(error**2))
+        return Sizes(value, np.diag(error**2))
 
     for signal in (n for n in parts[0].mean if all(n in p.mean for p in parts)):
         values = np.concatenate([p.mean[signal] for p in parts])
@@ -97,9 +97,9 @@ def _by_moments(fitted: Fitted, effect: Effect, data: Data) -> Iterator[Inconsta
     now = fitted.params[effect.parameters[0]]
     rows = sum(len(role.activity.column) for role in known)
 
-    def sizes(signal: str, cuts: Array) -> _Sizes | None:
+    def sizes(signal: str, cuts: Array) -> Sizes | None:
         found = linear(np.sum([role.parted(signal, cuts) for role in known], axis=0), rows)
-        return None if found is None else _Sizes(now + found[0], inflation_of(data) * found[1])
+        return None if found is None else Sizes(now + found[0], inflation_of(data) * found[1])
 
     for signal in (n for n in known[0].signals if all(n in role.signals for role in known)):
         values = np.concatenate([role.signals[signal].ravel() for role in known])
@@ -108,7 +108,7 @@ def _by_moments(fitted: Fitted, effect: Effect, data: Data) -> Iterator[Inconsta
 
 
 @dataclass(frozen=True)
-class _Sizes:
+class Sizes:
     """Of a cause, one for each part."""
 
     value: Array
@@ -130,7 +130,7 @@ def _law(
     effect: Effect,
     signal: str,
     values: Array,
-    sizes: Callable[[str, Array], _Sizes | None],
+    sizes: Callable[[str, Array], Sizes | None],
     rows: float,
 ) -> Inconstancy | None:
     """Halves say how the size changes; quarters what a law of any smooth shape would take."""
