@@ -23,7 +23,7 @@ class BenchLoopPlant : public BenchPlant {
   static double start_scale(int k) { return k < BenchPlant::kStart ? BenchPlant::start_scale(k) : 1.0; }
   int channels(int record) const { return BenchPlant::channels(record) + (of(record).command.size() > 0 ? 1 : 0); }
   Eigen::VectorXd guess(int record, int first) const;
-  bool feels_all(const Params<double>&, const Window&) const { return true; }
+  static bool feels_all(const Params<double>&, const Window&) { return true; }
 
   template <typename S>
   void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,

@@ -29,7 +29,7 @@ class PlatformLoopPlant : public PlatformPlant {
     return PlatformPlant::channels(record) + (of(record).command[0].size() > 0 ? 3 : 0);
   }
   Eigen::VectorXd guess(int record, int first) const;
-  bool feels_all(const LegParams<double>&, const Window&) const { return true; }
+  static bool feels_all(const LegParams<double>&, const Window&) { return true; }
 
   template <typename S>
   void simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,

@@ -167,6 +167,37 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
   simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
 }
 
+// From the numbers of a window's initial state (kStart).
+template <typename S>
+Pistons<S> pistons_at_start(const LegMachines<S>& machines, const PlatformRecord& record, int first, const S* start) {
+  Pistons<S> state;
+  for (int i = 0; i < 3; ++i) {
+    const Params<S>& p = machines.leg[i];
+    BenchState<S>& leg = state.leg[i];
+    leg = {start[i], start[3 + i], actuator_at_rest<S>(p, start[6 + i], start[9 + i])};
+    if (p.supply_line_resistance > S(0)) {
+      leg.actuator.supply_pressure = start[12 + i];
+    }
+    leg.actuator.deflection = start[15 + i];
+    leg.actuator.film = film_at_start(p, record.extension[static_cast<std::size_t>(i)], record.step, first,
+                                      leg.extension, leg.velocity);
+  }
+  return state;
+}
+
+// Which way each leg went last, for a sensor with play.
+template <typename S>
+Vec3<double> went_before(const LegMachines<S>& machines, const PlatformRecord& record, int first,
+                         const PlatformNoise& noise) {
+  Vec3<double> went = Vec3<double>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (!is_absent(machines.leg[i].backlash)) {
+      went(i) = detail::moved_last(record.extension[static_cast<std::size_t>(i)], first, 6.0 * noise.extension(i));
+    }
+  }
+  return went;
+}
+
 template <typename S>
 void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& window, int steps,
                                     const DrivesOf<S>& drives_of, const S* start, S* residual, const S* hidden,
@@ -183,18 +214,7 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
   const S g = stiff_share<S>() * h;
   const HiddenInputs<S> pushes(hidden, knots, window.samples);
 
-  Pistons<S> state;
-  for (int i = 0; i < 3; ++i) {
-    const Params<S>& p = machines.leg[i];
-    BenchState<S>& leg = state.leg[i];
-    leg = {start[i], start[3 + i], actuator_at_rest<S>(p, start[6 + i], start[9 + i])};
-    if (p.supply_line_resistance > S(0)) {
-      leg.actuator.supply_pressure = start[12 + i];
-    }
-    leg.actuator.deflection = start[15 + i];
-    leg.actuator.film = film_at_start(p, record.extension[static_cast<std::size_t>(i)], record.step, window.first,
-                                      leg.extension, leg.velocity);
-  }
+  Pistons<S> state = pistons_at_start(machines, record, window.first, start);
   auto drives = drives_of(machines, h);
   drives.begin(state);
 
@@ -209,14 +229,7 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
     piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y,
                     drives.at(sample + part), pushes ? push : nullptr, t, rate);
   };
-  Vec3<double> went = Vec3<double>::Zero();
-  for (int i = 0; i < 3; ++i) {
-    if (!is_absent(machines.leg[i].backlash)) {
-      went(i) =
-          detail::moved_last(record.extension[static_cast<std::size_t>(i)], window.first, 6.0 * noise_.extension(i));
-    }
-  }
-  PathSensors<S> sensors(machines, h, went);
+  PathSensors<S> sensors(machines, h, went_before(machines, record, window.first, noise_));
   Pistons<S> rate;
   for (int k = 0;; ++k) {
     for (int step = 0; step < steps; ++step) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -43,7 +44,7 @@ ShootingProblem<Plant>::ShootingProblem(Plant plant, const WindowOptions& option
   for (int record = 0; record < plant_.records(); ++record) {
     const int skipped = std::min(plant_.samples(record) / 2, static_cast<int>(options.run_up / plant_.step(record)));
     const int samples = plant_.samples(record) - skipped;
-    const int parts = std::max(1, static_cast<int>(samples * plant_.step(record) / options.length + 0.5));
+    const int parts = std::max(1, static_cast<int>(std::lround(samples * plant_.step(record) / options.length)));
     for (int part = 0; part < parts; ++part) {
       const int first = skipped + static_cast<int>(static_cast<long>(samples) * part / parts);
       const int end = skipped + static_cast<int>(static_cast<long>(samples) * (part + 1) / parts);
@@ -169,7 +170,7 @@ class ShootingProblem<Plant>::Simulated : public WindowSimulation {
     if (shot->has_slopes) {
       return;
     }
-    if (plant_.feels_all(params_, window_)) {
+    if (plant_.feels_all(params_, window_)) {  // NOLINT(bugprone-branch-clone): some plants have kFelt = kStart
       find_slopes_of<kStart>(shot);
     } else {
       find_slopes_of<Plant::kFelt>(shot);
@@ -272,8 +273,9 @@ Eigen::MatrixXd ShootingProblem<Plant>::differentiate(const Machine<double>& par
   for (int first = 0; first < all; first += kWidth) {
     const int width = std::min(kWidth, all - first);
     Machine<ParameterJet> seeded = cast<ParameterJet>(params);
+    const auto* of_these = free.data() + first;
     for (int k = 0; k < width; ++k) {
-      param(seeded, free[static_cast<std::size_t>(first + k)]).v[k] = 1.0;
+      param(seeded, of_these[k]).v[k] = 1.0;
     }
     plant_.simulate(seeded, w, start, jets.data());
     columns_of(jets, &columns);
@@ -299,8 +301,9 @@ void ShootingProblem<Plant>::differentiate_hidden(const Machine<double>& params,
   for (int first = 0; first < all; first += kWidth) {
     const int width = std::min(kWidth, all - first);
     std::fill(push.begin(), push.end(), ParameterJet(0.0));
+    ParameterJet* const of_these = push.data() + first;
     for (int k = 0; k < width; ++k) {
-      push[static_cast<std::size_t>(first + k)].v[k] = 1.0;
+      of_these[k].v[k] = 1.0;
     }
     plant_.simulate(plain, w, start, jets.data(), push.data(), knots);
     columns_of(jets, &columns);

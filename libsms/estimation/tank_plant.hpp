@@ -57,7 +57,7 @@ class TankPlant {
     return 1 + (of(record).temperature.size() > 0 ? 1 : 0) + (of(record).supply_pressure.size() > 0 ? 1 : 0);
   }
   Eigen::VectorXd guess(int record, int first) const;
-  bool feels_all(const Params<double>&, const Window&) const { return true; }
+  static bool feels_all(const Params<double>&, const Window&) { return true; }
 
   // The whole state where a window begins, in the order of TankState.
   Eigen::VectorXd state(const Params<double>& params, const Window& window, const Eigen::VectorXd& start) const;

@@ -252,7 +252,7 @@ TEST_CASE("without a recorded command there is a row less, and the rest is the s
   Eigen::VectorXd without(3 * (kSamples - kFirst));
   plant.simulate(c.p, window, start.data(), without.data());
   for (int k = 0; k < kSamples - kFirst; ++k) {
-    CHECK(std::memcmp(without.data() + 3 * k, with.data() + 4 * k, 3 * sizeof(double)) == 0);
+    CHECK(std::memcmp(without.data() + 3L * k, with.data() + 4L * k, 3 * sizeof(double)) == 0);
   }
 }
 

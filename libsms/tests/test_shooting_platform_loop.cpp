@@ -216,7 +216,7 @@ TEST_CASE("a platform's loop without recorded commands has three rows less, and 
   Eigen::VectorXd without(9 * (kSamples - kFirst));
   plant.simulate(p, window, s.start.data(), without.data());
   for (int k = 0; k < kSamples - kFirst; ++k) {
-    CHECK(std::memcmp(without.data() + 9 * k, with.data() + 12 * k, 9 * sizeof(double)) == 0);
+    CHECK(std::memcmp(without.data() + 9L * k, with.data() + 12L * k, 9 * sizeof(double)) == 0);
   }
 }
 
