@@ -198,6 +198,25 @@ Vec3<double> went_before(const LegMachines<S>& machines, const PlatformRecord& r
   return went;
 }
 
+// Of three pistons, each by itself.
+template <typename S>
+struct PistonStiffness {
+  ActuatorStiffness<S> leg[3];
+
+  template <typename Mass>
+  PistonStiffness(const LegMachines<S>& machines, const ActuatorLaws& laws, const Mass& mass, const PistonTerms<S>& t) {
+    for (int i = 0; i < 3; ++i) {
+      leg[i] = actuator_stiffness<S>(machines.leg[i], laws, S(mass(i, i)), t.actuator[i]);
+    }
+  }
+
+  void solve(const S& g, Pistons<S>& y) const {
+    for (int i = 0; i < 3; ++i) {
+      solve_stiff(leg[i], g, y.leg[i]);
+    }
+  }
+};
+
 template <typename S>
 void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& window, int steps,
                                     const DrivesOf<S>& drives_of, const S* start, S* residual, const S* hidden,
@@ -245,16 +264,8 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
           return;
         }
       }
-      ActuatorStiffness<S> slopes[3];
-      for (int i = 0; i < 3; ++i) {
-        slopes[i] = actuator_stiffness<S>(machines.leg[i], laws_,
-                                          S(path.points[static_cast<std::size_t>(k)].mass(i, i)), t.actuator[i]);
-      }
-      const auto solve = [&](Pistons<S>& y) {
-        for (int i = 0; i < 3; ++i) {
-          solve_stiff(slopes[i], g, y.leg[i]);
-        }
-      };
+      const PistonStiffness<S> slopes(machines, laws_, path.points[static_cast<std::size_t>(k)].mass, t);
+      const auto solve = [&](Pistons<S>& y) { slopes.solve(g, y); };
       const auto end_rate = [&](const Pistons<S>& moved, Pistons<S>& there) {
         const bool last = step + 1 == steps;
         rates_at(last ? k + 1 : k, last ? 0.0 : double(step + 1) / steps, moved, there);
