@@ -38,7 +38,7 @@ def test_the_python_example_names_both_causes() -> None:
 
 
 def test_the_c_example_compiles_links_and_runs(tmp_path: Path) -> None:
-    archive = ROOT / "build" / "dev" / "libsms" / "libsms.a"
+    archive = ROOT / "build" / "package" / "libsms" / "libsms.a"
     assert archive.is_file(), "run ./dev build first"
     (tmp_path / "readme.c").write_text(block("c"))
     flags = [
