@@ -20,7 +20,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 INCLUDE = ROOT / "libsms" / "include"
 OUT = ROOT / "build" / "abi"
-ARCHIVE = ROOT / "build" / "dev" / "libsms" / "libsms.a"
+ARCHIVE = ROOT / "build" / "package" / "libsms" / "libsms.a"
 PROTOTYPE = re.compile(r"([a-z_][\w ]*?[ *]+)(sms_\w+)\(([^()]*)\);")
 
 
