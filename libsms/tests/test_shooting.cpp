@@ -207,7 +207,8 @@ TEST_CASE("the lubricant's film follows the motion before a window, to the speed
   sms_test::Random random;
   for (int trial = 0; trial < 20; ++trial) {
     sms::Params<double> p;
-    p.friction_lag = random.uniform(0.01, 0.2);
+    // Eight lags of the record before the window count; half a sample away from one sample more, for the difference below.
+    p.friction_lag = (std::floor(random.uniform(0.01, 0.2) * 8.0 / kStep) + 0.5) * kStep / 8.0;
     p.clock_skew_extension = random.uniform(0.0, 0.012);
     p.sensor_gain_extension = random.uniform(-0.05, 0.05);
     p.sensor_offset_extension = random.uniform(-1e-3, 1e-3);
