@@ -85,6 +85,9 @@ class WindowSimulation {
   virtual void find_slopes(Shot* shot) const = 0;
 };
 
+// Samples of a window at least: one of fewer has nothing left to compare once its initial state is fitted.
+constexpr int kLeastOfWindow = 8;
+
 // Derivatives against parameters, four at a time: one AVX register.
 using ParameterJet = Jet<4>;
 

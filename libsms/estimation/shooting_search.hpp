@@ -7,6 +7,8 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "estimation/shooting.hpp"
@@ -42,6 +44,12 @@ template <typename Plant>
 ShootingProblem<Plant>::ShootingProblem(Plant plant, const WindowOptions& options)
     : plant_(std::move(plant)), options_(options) {
   for (int record = 0; record < plant_.records(); ++record) {
+    if (!(kLeastOfWindow * plant_.step(record) <= options.length)) {
+      throw std::invalid_argument("record " + std::to_string(record) + ": a step of " +
+                                  std::to_string(plant_.step(record)) + " s leaves fewer than " +
+                                  std::to_string(kLeastOfWindow) + " samples in a window of " +
+                                  std::to_string(options.length) + " s");
+    }
     const int skipped = std::min(plant_.samples(record) / 2, static_cast<int>(options.run_up / plant_.step(record)));
     const int samples = plant_.samples(record) - skipped;
     const int parts = std::max(1, static_cast<int>(std::lround(samples * plant_.step(record) / options.length)));

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sms._core
 from numpy.typing import NDArray
 from sms.io import InputError, load_rig, write_extended_rig, write_record
 from sms.io.check import check_record
@@ -95,6 +96,8 @@ def test_a_bench_rig_says_its_laws_its_loop_its_noise_and_what_differs_in_a_run(
         ('"stribeck"', '"strybeck"', "did you mean 'stribeck'"),
         ('"0.05 mm"', '"-1 mm"', "is negative"),
         ('"0.05 mm"', '"5 Pa"', "does not fit"),
+        ('"0.05 mm"', '"1e308 m"', "more than what such a sensor reads"),
+        ("valve_command = {}", "valve_command = { scale = nan }", "scale: must be a finite number"),
         ('moving_mass = "23.6 kg"', 'moving_maas = "23.6 kg"', "did you mean 'moving_mass'"),
         ('moving_mass = "23.6 kg"', 'moving_mass = "-1 kg"', "outside the allowed range"),
         ('"bench"', '"bank"', "'bank' is not known"),
@@ -189,3 +192,53 @@ def test_a_parameter_of_one_leg_is_written_into_the_rig_file_of_a_platform(tmp_p
     assert rig.declared("chamber_leakage_lower:2").value == pytest.approx(2e-9)
     assert rig.start()["chamber_leakage_lower:2"] == pytest.approx(2e-9)
     assert rig.start()["chamber_leakage_lower"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "line"),
+    [
+        (None, 1e3, 'write time = { column = "time", unit = "ms" }'),
+        ("hour", 1.0, 'write time = { column = "time", unit = "s" }'),
+        (None, 50.0, "check the unit of time"),
+    ],
+)
+def test_a_clock_in_another_unit_is_an_error_with_the_line_to_write(
+    tmp_path: Path, unit: str | None, factor: float, line: str
+) -> None:
+    said = "" if unit is None else f', unit = "{unit}"'
+    text = BENCH.replace('time = "time"', f'time = {{ column = "time"{said} }}')
+    path = bench(tmp_path, text, time=factor * bench_signals()["time"])
+    rig = load_rig(path)
+    found = check_record(rig, load_record(rig, rig.records[0]))
+    assert any(f.severity == "error" and f.signal == "time" and line in f.remedy for f in found)
+
+
+@pytest.mark.parametrize(
+    ("signal", "factor", "unit"),
+    [("extension", 100.0, "cm"), ("extension", 1e3, "mm"), ("chamber_pressure_upper", 1e-5, "bar"),
+     ("chamber_pressure_lower", 1e-3, "kPa")],
+)  # fmt: skip
+def test_readings_in_another_unit_are_an_error_with_the_line_to_write(
+    tmp_path: Path, signal: str, factor: float, unit: str
+) -> None:
+    path = bench(tmp_path, **{signal: factor * bench_signals()[signal]})
+    rig = load_rig(path)
+    found = check_record(rig, load_record(rig, rig.records[0]))
+    said = [f for f in found if f.severity == "error" and f.signal == signal]
+    assert any(f'unit = "{unit}"' in f.remedy for f in said), found
+
+
+@pytest.mark.parametrize("step", [0.0, -0.1, 0.2, 5.0, float("nan"), float("inf")])
+def test_the_core_refuses_windows_of_a_few_samples(step: float) -> None:
+    """A record in seconds of which the file has milliseconds brought the process down."""
+    record = sms._core.BenchRecord(
+        step=step,
+        command=np.full(600, 5.0),
+        extension=np.full(600, 0.2),
+        pressure_lower=np.full(600, 3e5),
+        pressure_upper=np.full(600, 3e5),
+    )
+    noise = {"extension": 1e-4, "supply_pressure": 300.0}
+    noise |= {"chamber_pressure_lower": 300.0, "chamber_pressure_upper": 300.0}
+    with pytest.raises(ValueError, match="step"):
+        sms._core.BenchProblem(records=[record], noise=noise)

@@ -248,14 +248,35 @@ def test_a_cell_that_is_no_number_is_found_with_its_line(
         assert word in str(finding)
 
 
-def test_a_line_that_ends_early_and_decimal_commas(tmp_path: Path) -> None:
+def test_a_line_that_ends_early(tmp_path: Path) -> None:
     (tmp_path / "r.csv").write_text(GOOD.rpartition(",")[0])
     (finding,) = read(tmp_path, rig_text("r.csv")).findings
     assert (finding.line, finding.signal, finding.message) == (4, "rod_force", "the cell is empty")
-    (tmp_path / "r.csv").write_text(GOOD.replace(",", ";").replace(".", ","))
+
+
+@pytest.mark.parametrize("name", ["semicolon", "tab"])
+def test_decimal_commas_are_read_where_commas_separate_nothing(tmp_path: Path, name: str) -> None:
+    separator = {"semicolon": ";", "tab": "\t"}[name]
+    (tmp_path / "r.csv").write_text(GOOD.replace(",", separator).replace(".", ","))
+    check_expected(read(tmp_path, rig_text("r.csv", f'delimiter = "{name}"')))
+
+
+def test_one_number_written_otherwise_is_said(tmp_path: Path) -> None:
+    """Decimal points, and one comma: which of both is meant is not for us to guess."""
+    (tmp_path / "r.csv").write_text(GOOD.replace(",", ";").replace("3.1", "3,1"))
     findings = read(tmp_path, rig_text("r.csv", 'delimiter = "semicolon"')).findings
-    assert "'3,1' is not a number (and 1 more" in "".join(f.message for f in findings)
+    assert "'3,1' is not a number" in "".join(f.message for f in findings)
     assert all("decimal point" in finding.remedy for finding in findings)
+
+
+def test_a_packed_file_is_unpacked_as_far_as_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sms.io.table_files.LARGEST_TEXT", 2**20)
+    with gzip.open(tmp_path / "r.csv.gz", "wb") as packed:
+        for _ in range(64):
+            packed.write(bytes(2**20))
+    assert "more than 1 MiB of text" in failure(tmp_path, rig_text("r.csv.gz"))
 
 
 def test_columns_that_are_not_used_may_hold_anything(tmp_path: Path) -> None:

@@ -116,6 +116,17 @@ def test_signals_and_data_are_read_in_si(tmp_path: Path) -> None:
     ("[parameters]", '[data]\nspeed_above = "-4 mm/s"\n[parameters]', ["not negative"]),
     ('file = "two.csv"', 'file = "one.csv"', ["'one.csv' is listed twice"]),
     ('file = "two.csv"', 'file = "two.csv"\nname = "one"', ["two records have the name 'one'"]),
+    # numbers that nothing can be calculated with
+    ('"0.02 mm"', "nan", ["bore_diameter.uncertainty", "must be a finite number"]),
+    ('"0.02 mm"', "1" + 400 * "0", ["bore_diameter.uncertainty", "must be a finite number"]),
+    ('"0.02 mm"', '"1e308 m"', ["bore_diameter", "wider than the whole allowed range, 0.001 to 1 m"]),
+    ('"25 mm"', 5000 * "9", ["a number in it has thousands of digits"]),
+    ("[parameters]", f"x = {999 * '['}{999 * ']'}\n[parameters]", ["nested hundreds deep"]),
+    # names that no file can have
+    ('file = "two.csv"', 'file = "~nosuchuser/two.csv"', ["number 2, file", "cannot be a path"]),
+    ('file = "two.csv"', r'file = "a\u0000.csv"', ["number 2, file", r"'a\x00.csv' cannot be a path"]),
+    ('file = "two.csv"', f'file = "{300 * "a"}"', ["number 2, file", "there is no file"]),
+    ('file = "two.csv"', 'file = "/"', ["number 2, file", "there is no file '/'"]),
     # not TOML
     ("[rig]", "[rig", ["not valid TOML", "line 1"]),
 ])  # fmt: skip

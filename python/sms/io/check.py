@@ -25,6 +25,7 @@ from sms.io.plausible import (
 from sms.io.records import Finding, Record, Severity
 from sms.io.rig import Rig
 from sms.io.signals import is_pressure
+from sms.io.unit_slips import unit_of_time
 
 GAP = 5.0  #: times the median step of time
 STEP_RANGE = (1e-6, 1.0)  #: s; a median step outside it is more likely a wrong unit of time
@@ -112,7 +113,7 @@ def _time_steps(rig: Rig, record: Record) -> Iterator[Finding]:
             None,
             "time",
             f"the median step is {median:g} s, unlikely for a measurement",
-            "check the unit of time in the rig file",
+            unit_of_time(rig, median),
         )
     gaps = np.flatnonzero(step > GAP * median) + 1
     remedy = "the samples on both sides are used; see whether something was lost"

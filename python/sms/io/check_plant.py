@@ -13,8 +13,12 @@ from sms.io.plausible import extension_range
 from sms.io.records import Finding, Record
 from sms.io.rig import Rig
 from sms.io.signals import SIGNALS, without_leg
+from sms.io.unit_slips import unit_of_time
 
 JITTER = 0.02  #: of the median step; time is taken as even, loggers round their stamps
+LONGEST_STEP = (
+    0.1  #: s between two samples, from where a valve and a piston move unseen between them
+)
 SHORTEST = 2.0  #: s of record, the least that shows a motion beside its start
 DEAD_SHARE = 0.2  #: a channel that stands still for this share of a record while others move
 CLIPPED_SHARE = 0.2  #: a channel at its extreme for this share of a record says nothing there
@@ -37,6 +41,16 @@ def even_time(rig: Rig, record: Record) -> Iterator[Finding]:
     if step.size == 0 or np.any(step <= 0.0):
         return
     median = float(np.median(step))
+    if median > LONGEST_STEP:
+        yield record.finding(
+            "error",
+            None,
+            "time",
+            f"one sample in {median:.4g} s: what moves between two samples cannot be told; needed: one in "
+            f"{LONGEST_STEP:g} s",
+            unit_of_time(rig, median),
+        )
+        return
     off = np.abs(step / median - 1.0)
     if np.max(off) > 0.5 or np.median(off) > JITTER:
         worst = int(np.argmax(off))

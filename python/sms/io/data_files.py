@@ -11,12 +11,30 @@ from sms.io.schema import DataTable, place
 
 def beside(path: Path, name: str, where: str, what: str) -> Path:
     """The file that the rig file `path` names, relative to its own folder; what: "rig file", "DBC file"."""
-    file = (path.parent / Path(name).expanduser()).resolve()
-    if not file.is_file():
+    file = (path.parent / _named(name, path, where)).resolve()
+    if not _is_file(file):
         near = nearest(file.name, (f.name for f in path.parent.glob(f"*{file.suffix or '.*'}")))
         remedy = f"did you mean '{near}'?" if near else f"name a {what} beside the rig file"
         raise InputError(f"{path}, {where}: there is no {what} {file}; {remedy}")
     return file
+
+
+def _named(name: str, path: Path, where: str) -> Path:
+    """A file's or folder's name in the rig file `path`, "~" expanded; InputError for what no path can be."""
+    try:
+        if "\0" in name:
+            raise ValueError
+        return Path(name).expanduser()
+    except (ValueError, RuntimeError):
+        raise InputError(f"{path}, {where}: {name[:60]!r} cannot be a path; check it") from None
+
+
+def _is_file(file: Path) -> bool:
+    """Whether there is such a file; a name that the file system refuses is none."""
+    try:
+        return file.is_file()
+    except OSError:
+        return False
 
 
 def find_files(names: list[str], data: DataTable, path: Path) -> list[Path]:
@@ -24,7 +42,9 @@ def find_files(names: list[str], data: DataTable, path: Path) -> list[Path]:
 
     The first place that has every file is taken. InputError lists the places looked at.
     """
-    folder = Path(data.folder or "").expanduser()
+    folder = _named(data.folder or "", path, "[data] folder")
+    for number, name in enumerate(names):
+        _named(name, path, place("records", number, "file"))
     places = [place_ / folder for place_ in search_places(path)] if not folder.is_absolute() else []
     for where in places or [folder]:
         if (files := files_in(where, names)) is not None:
@@ -42,8 +62,10 @@ def files_in(folder: Path, names: list[str]) -> list[Path] | None:
 def _on_disk(file: Path) -> Path | None:
     """The file, or the same one packed or unpacked ("run.csv.gz" for "run.csv" and back)."""
     file = file.resolve()
+    if not file.name:
+        return None
     twin = file.with_suffix("") if file.suffix == ".gz" else file.with_name(file.name + ".gz")
-    return next((candidate for candidate in (file, twin) if candidate.is_file()), None)
+    return next((candidate for candidate in (file, twin) if _is_file(candidate)), None)
 
 
 def search_places(path: Path) -> list[Path]:

@@ -224,6 +224,12 @@ def _declaration(
         uncertainty = interval_to_si(table.uncertainty, parameter.unit, f"{where}, uncertainty")
         if uncertainty < 0.0:
             raise InputError(f"{where}: an uncertainty is not negative; write its half width")
+        if uncertainty > (1.0 + 1e-9) * (parameter.upper - parameter.lower):
+            raise InputError(
+                f"{where}: an uncertainty of {table.uncertainty} is wider than the whole allowed range, "
+                f"{parameter.lower:g} to {parameter.upper:g}{unit_after(parameter)}; write fit = true where nothing is "
+                "known"
+            )
     return Declaration(value, uncertainty, table.fit)
 
 
@@ -246,11 +252,16 @@ def _flow_map(file: RigFile, path: Path) -> dict[str, Declaration]:
 def check_bounds(parameter: Parameter, value: float, where: str) -> None:
     """InputError, with the allowed range, unless lower <= value <= upper (SI)."""
     if not parameter.lower <= value <= parameter.upper:
-        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+        unit = unit_after(parameter)
         raise InputError(
             f"{where}: {value:g}{unit} is outside the allowed range "
             f"{parameter.lower:g} to {parameter.upper:g}{unit}; check the number and its unit"
         )
+
+
+def unit_after(parameter: Parameter) -> str:
+    """The unit as it follows a number; nothing of a plain number."""
+    return "" if parameter.unit == "1" else f" {parameter.unit}"
 
 
 def _records(

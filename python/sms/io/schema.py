@@ -6,6 +6,7 @@ files) is the subject of rig.py.
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,9 +18,21 @@ from sms.errors import InputError, did_you_mean, nearest
 
 
 def _text_or_number(value: object) -> str | float:
-    if isinstance(value, str) or (isinstance(value, (int, float)) and not isinstance(value, bool)):
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        if not is_finite(value):
+            raise ValueError("must be a finite number")
         return value
     raise ValueError('must be text with a number and a unit, like "25 mm"')
+
+
+def is_finite(number: float) -> bool:
+    """Whether a number of a TOML file, which may be an integer of any length, is one that can be calculated with."""
+    try:
+        return math.isfinite(number)
+    except OverflowError:
+        return False
 
 
 TextOrNumber = Annotated[str | float, PlainValidator(_text_or_number)]
@@ -37,7 +50,7 @@ def _short_form(key: str) -> BeforeValidator:
 class Table(BaseModel):
     """A TOML table in which an unknown key is a mistake and nothing is silently converted."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class RigTable(Table):
@@ -165,6 +178,7 @@ _EXPECTED = {
     "string_type": "must be text in quotes",
     "bool_type": "must be true or false",
     "int_type": "must be a whole number",
+    "finite_number": "must be a finite number",
     "float_type": "must be a number without quotes",
     "list_type": "must be a list in brackets",
     "model_type": "must be a table",
@@ -205,6 +219,12 @@ def parse_toml(text: str, path: Path) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
         raise InputError(f"{path}: not valid TOML: {problem}; correct it there") from None
+    except ValueError:  # of int(), which refuses to read thousands of digits
+        raise InputError(f"{path}: a number in it has thousands of digits; correct it") from None
+    except RecursionError:
+        raise InputError(
+            f"{path}: arrays or tables in it are nested hundreds deep; correct it"
+        ) from None
 
 
 def checked(model: type[Model], tables: Mapping[str, Any], path: Path) -> Model:

@@ -12,6 +12,7 @@ from sms.io.schema import ControlTable, RigFile, SignalTable
 from sms.io.signals import (
     KINDS,
     SIGNAL_UNITS,
+    SIGNALS,
     column_name,
     is_pressure,
     with_controller_simulated,
@@ -125,4 +126,10 @@ def _size(signal: str, text: str | float, where: str) -> float:
     size = interval_to_si(text, SIGNAL_UNITS[signal], where)
     if size < 0.0:
         raise InputError(f"{where}: {text} is negative; write its size")
+    usual = SIGNALS[without_leg(signal)]
+    if size > usual.high - usual.low:
+        raise InputError(
+            f"{where}: {text} is more than what such a sensor reads at all, {usual.low:g} to {usual.high:g} "
+            f"{usual.unit}; check the number and its unit"
+        )
     return size

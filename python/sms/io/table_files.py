@@ -71,16 +71,23 @@ def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Tab
     )
 
 
+LARGEST_TEXT = 128 * 2**20
+"""bytes of a file of text, unpacked: a million lines of ten columns. The table in memory takes ten times as much."""
+
+
 def _decoded(file: Path) -> str:
-    """The text of a file, unpacked if its name ends with .gz."""
+    """The text of a file, unpacked if its name ends with .gz. No more is unpacked than is read."""
     try:
-        content = file.read_bytes()
-        if is_packed(file):
-            content = gzip.decompress(content)
+        with (gzip.open if is_packed(file) else open)(file, "rb") as opened:
+            content = opened.read(LARGEST_TEXT + 1)
     except (gzip.BadGzipFile, EOFError, zlib.error):
         raise InputError(f"{file}: broken or cut-off gzip file; copy it again") from None
     except OSError as problem:
         raise InputError(f"{file}: cannot be read ({problem.strerror}); check the file") from None
+    if len(content) > LARGEST_TEXT:
+        raise InputError(
+            f"{file}: more than {LARGEST_TEXT // 2**20} MiB of text; split the record, or log at a lower rate"
+        )
     encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
         return content.decode(encoding)
@@ -103,7 +110,11 @@ def _read_text(file: Path, delimiter: str, columns: Sequence[str] | None) -> Tab
             f"{file}, line {numbered[0][0]}: one column only when separated by {delimiter}; "
             f'write delimiter = "{other}" in [data], or check the file'
         )
-    has_header = not any(_is_number(cell) for cell in first)
+    looked_at = [cell for _, line in numbered[1:LOOKED_AT] for cell in _split(line, delimiter)]
+    decimal = "," if _has_decimal_commas(looked_at) else "."
+    has_header = not (
+        any(map(_is_number, first)) or (decimal == "," and _has_decimal_commas(first))
+    )
     if columns is None:
         if not has_header:
             raise InputError(
@@ -118,7 +129,7 @@ def _read_text(file: Path, delimiter: str, columns: Sequence[str] | None) -> Tab
         )
     if not numbered:
         raise InputError(f"{file}: there is a header line but no data below it; record it again")
-    cells = _parse_cells(file, delimiter, numbered)
+    cells = _parse_cells(file, delimiter, decimal, numbered)
     cells = _without_trailing_delimiter(cells, len(columns))
     if cells.shape[1] != len(columns):
         raise InputError(
@@ -138,6 +149,16 @@ def _split(line: str, delimiter: str) -> list[str]:
     return cells[:-1] if len(cells) > 1 and not cells[-1] else cells
 
 
+LOOKED_AT = 50
+"""Lines of a table that tell how its numbers are written."""
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?|[+-]?\d+")
+
+
+def _has_decimal_commas(cells: Sequence[str]) -> bool:
+    """Whether numbers are written as in "0,005": some are, and all others are whole numbers."""
+    return any("," in cell for cell in cells) and all(map(_DECIMAL_COMMA.fullmatch, cells))
+
+
 def _is_number(cell: str) -> bool:
     try:
         float(cell)
@@ -146,13 +167,16 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _parse_cells(file: Path, delimiter: str, numbered: list[tuple[int, str]]) -> pd.DataFrame:
+def _parse_cells(
+    file: Path, delimiter: str, decimal: str, numbered: list[tuple[int, str]]
+) -> pd.DataFrame:
     text = "\n".join(line.strip() if delimiter == "whitespace" else line for _, line in numbered)
     try:
         return pd.read_csv(
             io.StringIO(text),
             sep=_SEPARATORS[delimiter],
             header=None,
+            decimal=decimal,
             keep_default_na=False,
             low_memory=False,
         )

@@ -133,11 +133,11 @@ def _set_parameter(table: Any, parameter: Parameter, declaration: Declaration, w
         if entry.get(key) is not None:
             unit = split_quantity(_plain(entry[key]), parameter.unit, where)[1]
             break
+    # A standard error may be wider than the range; as a half width the range says as much.
+    half_width = min(declaration.uncertainty, parameter.upper - parameter.lower)
     new: dict[str, object] = {
         "value": _written(from_si(declaration.value, unit, parameter.unit, where)),
-        "uncertainty": _written(
-            interval_from_si(declaration.uncertainty, unit, parameter.unit, where)
-        ),
+        "uncertainty": _written(interval_from_si(half_width, unit, parameter.unit, where)),
     }
     if declaration.fit:
         new["fit"] = True

@@ -1,0 +1,63 @@
+"""Which unit a column has, where the one that is declared cannot be right.
+
+A unit is proposed only where the readings in it are those of a working machine; the line to write comes with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from sms.io.records import Record
+from sms.io.rig import Rig
+from sms.io.signals import SIGNAL_UNITS
+from sms.io.units import split_column_name, to_si
+
+USUAL_STEP = (5e-4, 5e-2)
+"""s between two samples, of a logger beside a pneumatic machine: 2 kHz to 20 Hz."""
+
+TIMES = ("us", "ms", "s", "min")
+LENGTHS = ("mm", "cm", "m", "inch")
+PRESSURES = ("Pa", "hPa", "kPa", "MPa", "bar", "psi")
+
+
+def declared_unit(rig: Rig, signal: str) -> str:
+    """What the rig file has a signal's column in; SI where only the file's own header says it."""
+    source = rig.signals[signal]
+    return source.unit or split_column_name(source.column)[1] or SIGNAL_UNITS[signal]
+
+
+def likely_unit(
+    rig: Rig, signal: str, units: Sequence[str], fits: Callable[[float], bool]
+) -> str | None:
+    """The unit in which the readings fit; None if there is none, or several.
+
+    fits: whether readings that are so many times as large are those of a working machine.
+    """
+    si, declared = SIGNAL_UNITS[signal], declared_unit(rig, signal)
+    now = to_si(f"1 {declared}", si, signal)
+    fitting = [u for u in units if u != declared and fits(to_si(f"1 {u}", si, signal) / now)]
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def remedy(rig: Rig, signal: str, unit: str) -> str:
+    """What to write in [signals]."""
+    return (
+        f"check the unit of {signal}: the column looks like {unit}; write {signal} = "
+        f'{{ column = "{rig.signals[signal].column}", unit = "{unit}" }} in [signals]'
+    )
+
+
+def unit_of_time(rig: Rig, step: float) -> str:
+    """What to do about a median step, s, that no logger has."""
+    unit = likely_unit(rig, "time", TIMES, lambda f: USUAL_STEP[0] <= step * f <= USUAL_STEP[1])
+    return "check the unit of time in [signals]" if unit is None else remedy(rig, "time", unit)
+
+
+def unit_of_pressure(rig: Rig, record: Record, signal: str) -> str | None:
+    """The unit in which the median reading is between half of ambient and 12 bar, or None."""
+    ambient = rig.declared("ambient_pressure").value
+    middle = float(np.nanmedian(record.used(rig, signal)))
+    gauge = ambient if signal in record.gauge else 0.0
+    return likely_unit(rig, signal, PRESSURES, lambda f: 0.5 * ambient < f * middle + gauge < 1.2e6)
