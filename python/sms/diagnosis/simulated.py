@@ -15,6 +15,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.adequacy.hysteresis import Hysteresis
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
+from sms.diagnosis.adequacy.misdeclared_signals import misdeclared_signals
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency, inconsistency
 from sms.diagnosis.adequacy.residual_energy import (
@@ -132,6 +133,10 @@ def diagnose_plant(
         )
     data = make_data(rig, records)
     if faults := without_windows(data):
+        findings = (*blank.findings, *faults)
+        return replace(blank, verdict="data-fault", findings=findings, sentence=data_fault(faults))
+    progress("asking whether a signal is declared wrongly", 0.02)
+    if faults := misdeclared_signals(data, baseline_hypothesis(data, effects_of(rig)).start):
         findings = (*blank.findings, *faults)
         return replace(blank, verdict="data-fault", findings=findings, sentence=data_fault(faults))
     case = investigate(data, effects_of(rig), rng, progress)

@@ -1,0 +1,86 @@
+"""Signals that the rig file declares wrongly are said with the line to write, and never end in a physical cause."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from plant_support import write_bench
+from sms.diagnosis.adequacy.misdeclared_signals import misdeclared_signals
+from sms.diagnosis.effects.catalogue import effects_of
+from sms.diagnosis.hypothesis import Data, baseline_hypothesis
+from sms.diagnosis.pipeline import read_and_check
+from sms.diagnosis.preparation import make_data
+from sms.diagnosis.result import Finding
+from sms.io import load_rig
+from sms.io.records import Record
+
+Signals = dict[str, NDArray[np.float64]]
+AMBIENT = 86e3  # Pa, as write_bench has it
+LOWER, UPPER = "chamber_pressure_lower", "chamber_pressure_upper"
+
+
+@pytest.fixture(scope="module")
+def healthy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_bench(tmp_path_factory.mktemp("healthy"), 1, {})
+
+
+@pytest.fixture(scope="module")
+def leaking(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Several times what can be found: the declared model is wrong by many times the noise of every reading."""
+    return write_bench(tmp_path_factory.mktemp("leaking"), 2, {"chamber_leakage_lower": 5e-10})
+
+
+def found(path: Path, slip: Callable[[Signals], Signals] = dict) -> tuple[Finding, ...]:
+    rig = load_rig(path)
+    records, _ = read_and_check(rig)
+
+    def slipped(record: Record) -> Record:
+        return replace(record, signals=dict(record.signals) | slip(dict(record.signals)))
+
+    data: Data = make_data(rig, [slipped(r) for r in records])
+    return misdeclared_signals(data, baseline_hypothesis(data, effects_of(rig)).start)
+
+
+def test_a_right_declaration_is_left_alone(healthy: Path, leaking: Path) -> None:
+    assert found(healthy) == ()
+    assert found(leaking) == ()
+
+
+@pytest.mark.parametrize(
+    ("slip", "signal", "line"),
+    [
+        (lambda x: {LOWER: x[LOWER] - AMBIENT, UPPER: x[UPPER] - AMBIENT}, LOWER,
+         f"write gauge = true in [signals] {LOWER} and of every other pressure"),
+        (lambda x: {UPPER: x[UPPER] - AMBIENT}, UPPER, f"write gauge = true in [signals] {UPPER}"),
+        (lambda x: {LOWER: x[UPPER], UPPER: x[LOWER]}, LOWER, "exchange the columns"),
+        (lambda x: {"extension": 0.4 - x["extension"]}, "extension",
+         'write scale = -1, offset = "0.4 m" in [signals] extension'),
+        (lambda x: {"extension": -x["extension"]}, "extension", "write scale = -1"),
+        (lambda x: {"valve_command": 10.0 - x["valve_command"]}, "valve_command",
+         'write scale = -1, offset = "10 V" in [signals] valve_command'),
+        (lambda x: {"time": 1.07 * x["time"]}, "time", "write scale = 0.934579 in [signals] time"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("machine", ["healthy", "leaking"])
+def test_a_slip_is_said_with_the_line_to_write(
+    slip: Callable[[Signals], Signals],
+    signal: str,
+    line: str,
+    machine: str,
+    request: pytest.FixtureRequest,
+) -> None:
+    """Beside a cause that is as large as the records can hold, too."""
+    (finding,) = found(request.getfixturevalue(machine), slip)
+    assert (finding.severity, finding.signal) == ("error", signal), finding
+    assert line in finding.remedy
+
+
+def test_a_loop_whose_pressures_are_gauge_is_said_too(tmp_path: Path) -> None:
+    path = write_bench(tmp_path, 3, {}, in_loop=True)
+    (finding,) = found(path, lambda x: {LOWER: x[LOWER] - AMBIENT, UPPER: x[UPPER] - AMBIENT})
+    assert "gauge = true" in finding.remedy
