@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import sms._core
 from numpy.typing import NDArray
+from sms.diagnosis.pipeline import read_and_check
 from sms.io import InputError, load_rig, write_extended_rig, write_record
 from sms.io.check import check_record
 from sms.io.records import Record, load_record
@@ -242,3 +243,22 @@ def test_the_core_refuses_windows_of_a_few_samples(step: float) -> None:
     noise |= {"chamber_pressure_lower": 300.0, "chamber_pressure_upper": 300.0}
     with pytest.raises(ValueError, match="step"):
         sms._core.BenchProblem(records=[record], noise=noise)
+
+
+def test_a_record_at_20_khz_is_thinned_and_that_is_said(tmp_path: Path) -> None:
+    signals = bench_signals(60_000) | {"time": 5e-5 * np.arange(60_000)}
+    path = bench(tmp_path, BENCH.replace('"test"', '"validate"'), **signals)
+    records, findings = read_and_check(load_rig(path))
+    assert [len(r) for r in records] == [3_000, 3_000]
+    assert np.allclose(np.diff(records[0].signals["time"]), 1e-3)
+    assert "one sample in 20 is used" in " ".join(f.remedy for f in findings)
+    assert records[0].signals["extension"][1] == signals["extension"][20]
+
+
+def test_more_samples_than_a_diagnosis_holds_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sms.io.thinning.MOST_SAMPLES", 2399)
+    path = bench(tmp_path, BENCH.replace('"test"', '"validate"'))
+    with pytest.raises(InputError, match="2400 samples in 2 records; a diagnosis holds 2399"):
+        read_and_check(load_rig(path))

@@ -116,6 +116,8 @@ def test_signals_and_data_are_read_in_si(tmp_path: Path) -> None:
     ("[parameters]", '[data]\nspeed_above = "-4 mm/s"\n[parameters]', ["not negative"]),
     ('file = "two.csv"', 'file = "one.csv"', ["'one.csv' is listed twice"]),
     ('file = "two.csv"', 'file = "two.csv"\nname = "one"', ["two records have the name 'one'"]),
+    ("[parameters]", '[parameters]\nrod_diameter = "25 mm"',
+     ["a rod of 25 mm does not go into a bore of 25 mm"]),
     # numbers that nothing can be calculated with
     ('"0.02 mm"', "nan", ["bore_diameter.uncertainty", "must be a finite number"]),
     ('"0.02 mm"', "1" + 400 * "0", ["bore_diameter.uncertainty", "must be a finite number"]),

@@ -10,7 +10,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from plant_support import write_bench
-from sms.diagnosis.adequacy.misdeclared_signals import misdeclared_signals
+from sms.diagnosis.adequacy.misdeclared_signals import (
+    misdeclared_signals,
+    of_another_machine,
+)
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import Data, baseline_hypothesis
 from sms.diagnosis.pipeline import read_and_check
@@ -84,3 +87,17 @@ def test_a_loop_whose_pressures_are_gauge_is_said_too(tmp_path: Path) -> None:
     path = write_bench(tmp_path, 3, {}, in_loop=True)
     (finding,) = found(path, lambda x: {LOWER: x[LOWER] - AMBIENT, UPPER: x[UPPER] - AMBIENT})
     assert "gauge = true" in finding.remedy
+
+
+@pytest.mark.parametrize(("bore", "warned"), [("100 mm", False), ("63 mm", True)])
+def test_the_rig_file_of_another_machine_is_said(healthy: Path, bore: str, warned: bool) -> None:
+    text = healthy.read_text().replace(
+        "[parameters]\n", f'[parameters]\nbore_diameter = "{bore}"\n'
+    )
+    path = healthy.with_name(f"{bore}.toml")
+    path.write_text(text)
+    rig = load_rig(path)
+    data = make_data(rig, read_and_check(rig)[0])
+    findings = of_another_machine(data, baseline_hypothesis(data, effects_of(rig)).start)
+    assert [f.severity for f in findings] == ["warning"] * warned
+    assert all("bore_diameter" in f.remedy for f in findings)

@@ -31,6 +31,7 @@ from sms.errors import InputError
 from sms.io import check as data_check
 from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
+from sms.io.thinning import raise_if_too_many, thinned
 from sms.rigs.kinds import KINDS
 
 
@@ -98,6 +99,7 @@ def read_and_check(rig: Rig) -> tuple[list[Record], tuple[Finding, ...]]:
     records, findings = [], []
     for source in rig.records:
         record = load_record(rig, source)
+        record = thinned(record) if rig.kind in KINDS else record
         found = data_check.check_record(rig, record)
         data_check.raise_if_unusable(
             [f for f in found if f in record.findings or f.signal in ("time", None)]
@@ -106,6 +108,8 @@ def read_and_check(rig: Rig) -> tuple[list[Record], tuple[Finding, ...]]:
         findings += [
             Finding(f.severity, f.file.name, f.line, f.signal, f.message, f.remedy) for f in found
         ]
+    if rig.kind in KINDS:
+        raise_if_too_many(rig, records)
     return records, tuple(findings)
 
 

@@ -15,7 +15,10 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.adequacy.hysteresis import Hysteresis
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
-from sms.diagnosis.adequacy.misdeclared_signals import misdeclared_signals
+from sms.diagnosis.adequacy.misdeclared_signals import (
+    misdeclared_signals,
+    of_another_machine,
+)
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency, inconsistency
 from sms.diagnosis.adequacy.residual_energy import (
@@ -136,9 +139,11 @@ def diagnose_plant(
         findings = (*blank.findings, *faults)
         return replace(blank, verdict="data-fault", findings=findings, sentence=data_fault(faults))
     progress("asking whether a signal is declared wrongly", 0.02)
-    if faults := misdeclared_signals(data, baseline_hypothesis(data, effects_of(rig)).start):
+    start = baseline_hypothesis(data, effects_of(rig)).start
+    if faults := misdeclared_signals(data, start):
         findings = (*blank.findings, *faults)
         return replace(blank, verdict="data-fault", findings=findings, sentence=data_fault(faults))
+    blank = replace(blank, findings=(*blank.findings, *of_another_machine(data, start)))
     case = investigate(data, effects_of(rig), rng, progress)
     return complete(blank, case, rng, progress, empirical)
 

@@ -147,7 +147,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
         speed_above = to_si(data.speed_above, "m/s", where)
         if speed_above < 0.0:
             raise InputError(f"{where}: a speed is not negative; write 0 or more")
-    return Rig(
+    rig = Rig(
         path=path,
         kind=file.rig.kind,
         title=file.rig.title or path.stem,
@@ -179,6 +179,18 @@ def interpret(file: RigFile, path: Path) -> Rig:
         if file.effects is None
         else beside(path, file.effects.file, "[effects] file", "file of effects"),
     )
+    _check_machine(rig)
+    return rig
+
+
+def _check_machine(rig: Rig) -> None:
+    """InputError for values that are allowed each by itself, and together make no machine."""
+    bore, rod = (rig.declared(n).value for n in ("bore_diameter", "rod_diameter"))
+    if rod >= bore and (rig.kind in ("bench", "platform") or "rod_diameter" in rig.parameters):
+        raise InputError(
+            f"{rig.path}, [parameters]: a rod of {1e3 * rod:g} mm does not go into a bore of {1e3 * bore:g} mm; check "
+            "rod_diameter, bore_diameter and their units"
+        )
 
 
 def _control(table: RecordTable, rig: ControlTable, number: int, path: Path) -> ControlTable:
