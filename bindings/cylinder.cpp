@@ -1,4 +1,6 @@
 // Friction and force balance of one cylinder, over numpy arrays that broadcast.
+#include <limits>
+
 #include "bind.hpp"
 #include "sms/piston.hpp"
 
@@ -14,7 +16,8 @@ void def_of_piston(py::module_& m, const char* name, Equation equation, const ch
       [equation](const Params& params, const Array& extension, const Array& velocity, const Array& acceleration,
                  const Array& pressure_lower, const Array& pressure_upper) {
         const auto one = [&params, equation](double x, double v, double a, double lower, double upper) {
-          return equation(params, {x, v, a, lower, upper});
+          const sms::Piston<double> piston = {x, v, a, lower, upper};
+          return sms::is_finite(piston) ? equation(params, piston) : std::numeric_limits<double>::quiet_NaN();
         };
         return py::vectorize(one)(extension, velocity, acceleration, pressure_lower, pressure_upper);
       },
@@ -30,7 +33,10 @@ void bind_cylinder(py::module_& m) {
   m.def(
       "friction_stribeck",
       [](const Params& params, const Array& velocity) {
-        return py::vectorize([&params](double v) { return sms::friction_stribeck(params, v); })(velocity);
+        const auto one = [&params](double v) {
+          return sms::is_finite(v) ? sms::friction_stribeck(params, v) : std::numeric_limits<double>::quiet_NaN();
+        };
+        return py::vectorize(one)(velocity);
       },
       py::arg("params"), py::arg("velocity"), "The simple friction law, N (eq. 4.33).");
 }

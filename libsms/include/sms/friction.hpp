@@ -46,6 +46,12 @@ struct Piston {
   S pressure_upper;  // p_b, Pa absolute; ambient for a single-acting cylinder
 };
 
+template <typename S>
+bool is_finite(const Piston<S>& piston) {
+  return is_finite(piston.extension) && is_finite(piston.velocity) && is_finite(piston.acceleration) &&
+         is_finite(piston.pressure_lower) && is_finite(piston.pressure_upper);
+}
+
 // sgn(v) alpha of eq. 6.7: an odd function, from -1 to 1, smooth through v = 0.
 template <typename S>
 S friction_ramp(const S& velocity, const S& stiction_velocity) {

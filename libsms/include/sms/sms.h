@@ -99,6 +99,7 @@ int sms_param_count(void);
 const sms_param_info *sms_param_describe(int index);
 
 /* ---- one cylinder (friction.hpp, piston.hpp) --------------------------------------------------------------------- */
+/* NaN where an input is NaN or infinite. */
 /* Friction force of the cylinder, N, positive against extension: eq. 6.5 to 6.7 and the effects on friction. */
 double sms_friction(const sms_params *params, const sms_piston *piston);
 float sms_frictionf(const sms_paramsf *params, const sms_pistonf *piston);
