@@ -17,7 +17,7 @@ from sms.diagnosis.hypothesis import (
     fit_with_discrepancy,
     weights_of,
 )
-from sms.estimation.block_statistics import covariance_from, covariance_of
+from sms.estimation.block_statistics import covariance_from, scatter_of_scores
 from sms.estimation.nuisance import Joint
 from sms.estimation.windows import Runs
 
@@ -62,13 +62,27 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
 
 
 def _inflation(jacobian: Array, residual: Array, pull: Array, runs: Runs) -> float:
-    """By what factor the variance of an estimate is larger by the scatter of blocks than by whitened residuals: the
-    geometric mean over the parameters."""
-    noise = np.diag(covariance_from(jacobian.T @ jacobian + pull.T @ pull))
-    blocks = np.diag(covariance_of(jacobian, residual, runs.block))
-    seen = noise > 0.0
-    ratio = np.clip(blocks[seen] / noise[seen], 1.0, MOST_INFLATED**2)
-    return float(np.exp(np.mean(np.log(ratio))))
+    """By what factor the scatter of the blocks' scores is larger than the information of whitened residuals (for
+    independent ones both are the same): the geometric mean over the directions of the parameters, each counted by the
+    share of what is known of it that these records tell. What they do not tell has no scatter to be measured.
+    """
+    information, declared = jacobian.T @ jacobian, pull.T @ pull
+    scatter = scatter_of_scores(jacobian, residual, runs.block)
+    scale = np.sqrt(np.maximum(np.diag(information + declared), 1e-300))
+    information, declared, scatter = (
+        x / np.outer(scale, scale) for x in (information, declared, scatter)
+    )
+    total, axes = np.linalg.eigh(information + declared)
+    known = total > 1e-12 * total[-1]
+    axes = axes[:, known] / np.sqrt(total[known])
+    share, turned = np.linalg.eigh(axes.T @ information @ axes)
+    axes = axes @ turned
+    told = share > 0.5
+    if not np.any(told):
+        return 1.0
+    ratio = np.einsum("ki,kl,li->i", axes, scatter, axes)[told] / share[told]
+    mean = np.average(np.log(np.maximum(ratio, 1e-300)), weights=share[told])
+    return float(np.clip(np.exp(mean), 1.0, MOST_INFLATED**2))
 
 
 def _healthy(fitted: Fitted, white: Array, data: Data, inflation: float) -> Healthy:

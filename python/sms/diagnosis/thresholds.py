@@ -78,6 +78,8 @@ CANDIDATE_STEPS = 2
 Run time."""
 PAIRED = 5
 """Effects of a round that are fitted two at a time where none stands alone: those that promise most. Run time."""
+PARTNERS = 2
+"""Of these, the ones that finite steps on top of the best promise most of. Run time."""
 PAIR_STEPS = 4
 """Jacobians in the fit of two effects: they have farther to go than one. Run time."""
 LEAST_SHARE = 0.5
@@ -94,6 +96,11 @@ LEAST_OF_NOISE = 0.1
 Judgement: the machine is the same, the runs are not."""
 TWINS = 0.9
 """Cosine of two changes of all predictions from which two effects are one class, if neither is worse. Judgement."""
+
+MOST_MEMBERS = 3
+"""Of a class, where predictions change otherwise than the best's: an answer of more names is none. Convention: that of
+the goals.
+"""
 
 # ---- Lack of fit -----------------------------------------------------------------------------------
 

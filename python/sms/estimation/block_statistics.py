@@ -66,14 +66,21 @@ def score_test(
 
 def covariance_of(jacobian: Array, residual: Array, block: Index) -> Array:
     """Covariance (k, k) of least-squares parameters, robust to any correlation within blocks."""
-    groups = int(block.max()) + 1
     scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-150)  # its square is a number still
     j = jacobian / scale
     bread = np.linalg.pinv(j.T @ j, rcond=1e-12)
-    scores = sum_by(block, j * residual[:, None], groups)
-    n, k = j.shape
+    return np.asarray(
+        bread @ scatter_of_scores(j, residual, block) @ bread / np.outer(scale, scale)
+    )
+
+
+def scatter_of_scores(jacobian: Array, residual: Array, block: Index) -> Array:
+    """(k, k): covariance of J'r by the scatter of its blocks, corrected for their number."""
+    groups = int(block.max()) + 1
+    scores = sum_by(block, jacobian * residual[:, None], groups)
+    n, k = jacobian.shape
     small_sample = groups / max(groups - 1, 1) * (n - 1) / max(n - k, 1)
-    return np.asarray(small_sample * bread @ (scores.T @ scores) @ bread / np.outer(scale, scale))
+    return np.asarray(small_sample * scores.T @ scores)
 
 
 def covariance_from(information: Array) -> Array:

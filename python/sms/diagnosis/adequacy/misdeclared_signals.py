@@ -40,7 +40,7 @@ WHOLE = 2e-4
 
 FOLLOWED = 0.05
 """Of a position's variance within a window: what a model of the same machine leaves at most. Judgement, from data of
-another simulator: 0.04 at the most with an effect, 0.1 to 0.5 with the bores of the next smaller cylinders of a catalogue. It
+another simulator: 0.04 at the most with an effect, 0.1 to 0.5 with the bores of smaller cylinders. It
 decides a warning."""
 
 Signals = Mapping[str, Array]

@@ -12,7 +12,7 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array
-from sms.diagnosis.adequacy.residual_energy import energies, logarithms
+from sms.diagnosis.adequacy.residual_energy import beyond_healthy, energies, logarithms
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Hypothesis, residual_of
 from sms.diagnosis.selection.candidates import room_of
@@ -45,6 +45,25 @@ class Step:
     params: _core.Params
     change: Array
     """(rows,) of the excerpt's residual."""
+
+
+def best_steps(effects: Sequence[Effect], current: Fitted, data: Data) -> list[Step]:
+    """Of each effect on top of a model, on the windows that tell most."""
+    base = _base(current, data)
+    left = beyond_healthy(data, data.identify, residual_of(data.identify, base))
+    excerpt = data.identify.excerpt(telling_windows(data.identify, left))
+    here = logarithms(excerpt, residual_of(excerpt, base))
+    return [best_step(e, current, base, data, excerpt, here) for e in effects]
+
+
+def _base(current: Fitted, data: Data) -> _core.Params:
+    """Where finite steps are tried from: the model as it stands. Where records of the healthy machine told its numbers,
+    they are held there: a change that other numbers have made up for is then in plain sight.
+    """
+    if data.healthy is None:
+        return current.params
+    known = list(current.hypothesis.known)
+    return changed(current.params, known, np.array([current.hypothesis.start[n] for n in known]))
 
 
 def best_step(

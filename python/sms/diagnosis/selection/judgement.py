@@ -17,7 +17,14 @@ from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Healthy, refitted
 from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.thresholds import LEAST_SHARE, SIGNIFICANT, TELLS_APART, TWINS
+from sms.diagnosis.selection.outcome import Round
+from sms.diagnosis.thresholds import (
+    LEAST_SHARE,
+    MOST_MEMBERS,
+    SIGNIFICANT,
+    TELLS_APART,
+    TWINS,
+)
 from sms.estimation.block_statistics import interval, resampled
 from sms.units_display import format_quantity
 
@@ -56,7 +63,7 @@ def judge(
             _by_likelihood(trial, before, after, weights, tried, data.healthy)
         low, high = (min(part * g, 1.0) for g in trial.gain_interval)
         trial.share = (min(part * trial.gain, 1.0), low, high)
-        if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data):
+        if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data, before, after):
             trial.cross_validated = True
             disagreement = cross_validation.objection(
                 trial.fitted, current, data, 1.0, rng.spawn(1)[0]
@@ -112,14 +119,17 @@ def _by_likelihood(
     trial.p_value = min(1.0, tried * float(chi2.sf(ratio, len(trial.effect.parameters))))
 
 
-def _insensitive(trial: Trial, current: Fitted, data: Data) -> bool:
+def _insensitive(trial: Trial, current: Fitted, data: Data, before: Left, after: Left) -> bool:
     """Whether the change of the validation records is not practically significant, and not significantly for the worse.
-    With records of the healthy machine the likelihood has weighed them already: the latter is enough.
+
+    With records of the healthy machine the likelihood has weighed them already, and an effect is worth having that is
+    far smaller than what its model leaves: they speak against it where they take back most of what it takes.
     """
+    if data.healthy is not None:
+        taken, gained = (float(np.mean(before.energy(r) - after.energy(r))) for r in ROLES)
+        return gained > -LEAST_SHARE * taken or trial.gain_interval[1] >= 0.0
     if trial.gain_interval[1] < 0.0:
         return False
-    if data.healthy is not None:
-        return True
     least = data.validate.kind.practically_significant[0]
     return cross_validation.change_on_validation(trial.fitted, current, data) < least
 
@@ -175,19 +185,36 @@ def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> lis
 def alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
     """The first of them, and those whose predictions change alike and are no worse."""
     best = accepted[0]
-    left = Left.by(best.fitted, data).by_window
     members = [best]
     for trial in accepted[1:]:
         cosine = _similarity(best, trial, current, data)
-        worse = Left.by(trial.fitted, data).by_window - left
-        error = float(np.std(worse)) * np.sqrt(len(worse))
-        if cosine > TWINS and float(worse.sum()) <= TELLS_APART * error:
+        if cosine > TWINS and _no_worse(trial, best, data):
             members.append(trial)
     members = _plainest(members)
     for trial in members:
         _similarity(members[0], trial, current, data)
         trial.support = 1.0 / len(members)
     return members
+
+
+def with_substitutes(last: Round, data: Data) -> Round:
+    """The class of the last cause, and accepted trials that are no worse: beside it none of them is needed any more, so
+    each is another account of the same error, although its predictions change otherwise.
+    """
+    rivals = [t for t in last.trials if t.accepted and t not in last.members]
+    rivals = [t for t in rivals if _no_worse(t, last.members[0], data)]
+    room = max(MOST_MEMBERS - len(last.members), 0)
+    members = [*last.members, *sorted(rivals, key=lambda t: -t.lower)[:room]]
+    for trial in members:
+        trial.support = 1.0 / len(members)
+    return Round(last.trials, members)
+
+
+def _no_worse(trial: Trial, best: Trial, data: Data) -> bool:
+    """Whether what it leaves, window by window, is not significantly more."""
+    worse = Left.by(trial.fitted, data).by_window - Left.by(best.fitted, data).by_window
+    error = float(np.std(worse) * np.sqrt(len(worse)))
+    return float(worse.sum()) <= TELLS_APART * error
 
 
 def _similarity(one: Trial, other: Trial, current: Fitted, data: Data) -> float:

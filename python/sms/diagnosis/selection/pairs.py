@@ -17,10 +17,10 @@ from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, 
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.selection.finite_steps import extended
+from sms.diagnosis.selection.finite_steps import Step, best_steps, extended
 from sms.diagnosis.selection.judgement import alike, judge
 from sms.diagnosis.selection.outcome import Round
-from sms.diagnosis.thresholds import LEAST_SHARE, PAIR_STEPS, PAIRED, TWINS
+from sms.diagnosis.thresholds import LEAST_SHARE, PAIR_STEPS, PAIRED, PARTNERS, TWINS
 from sms.estimation.least_squares import changed
 
 
@@ -36,12 +36,13 @@ def try_pairs(
 
     trials: of the round in which no effect stood alone.
     """
-    tried = _most_promising(trials, current)
+    tried, beside_first = _most_promising(trials, current, data)
     alone = [_alone(t, current, data) for t in tried]
     effects = [t.effect for t in tried]
     both: dict[frozenset[int], Fitted] = {}
     for i, j in combinations(range(len(tried)), 2):
-        both[frozenset((i, j))] = _together(alone[i], alone[j], data)
+        step = beside_first.get(effects[j]) if i == 0 else None
+        both[frozenset((i, j))] = _together(alone[i], alone[j], data, step)
     if not both:
         return []
     best, pair = min(both.items(), key=lambda item: _left_of(item[1], data))
@@ -74,11 +75,25 @@ def _rivals(
     return found
 
 
-def _most_promising(trials: Sequence[Trial], current: Fitted) -> list[Trial]:
-    """Those that were fitted and lower most first, then the others by their score tests."""
+def _most_promising(
+    trials: Sequence[Trial], current: Fitted, data: Data
+) -> tuple[list[Trial], dict[Effect, Step]]:
+    """Those that were fitted and lower most, and those that finite steps on top of the best of them would lower it
+    most: beside a large cause another one may be hidden altogether. With those steps.
+    """
     fitted = sorted((t for t in trials if t.fitted is not current), key=lambda t: -t.lower)
-    others = sorted((t for t in trials if t.fitted is current), key=lambda t: t.p_value)
-    return [*fitted, *others][:PAIRED]
+    if not fitted:
+        return [], {}
+    others = [t for t in trials if t.effect is not fitted[0].effect]
+    steps = best_steps([t.effect for t in others], fitted[0].fitted, data)
+    beside = {t.effect: s for t, s in zip(others, steps, strict=True) if s.gain > 0.0}
+    helping = [t for t in sorted(others, key=lambda t: -_gain(beside, t)) if t.effect in beside]
+    tried = [*fitted[: PAIRED - PARTNERS], *helping[:PARTNERS], *fitted[PAIRED - PARTNERS :]]
+    return list({id(t.effect): t for t in tried}.values())[:PAIRED], beside
+
+
+def _gain(beside: Mapping[Effect, Step], trial: Trial) -> float:
+    return beside[trial.effect].gain if trial.effect in beside else 0.0
 
 
 def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
@@ -89,17 +104,19 @@ def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
     return fit(hypothesis, data.identify, current.params, PAIR_STEPS, discrepancy=allowed)
 
 
-def _together(one: Fitted, other: Fitted, data: Data) -> Fitted:
-    """Both effects fitted, from the best of what each alone begins with."""
+def _together(one: Fitted, other: Fitted, data: Data, step: Step | None) -> Fitted:
+    """Both effects fitted, from the best of what each alone begins with, and of a step of the other beside the one."""
     effect = other.hypothesis.causes[-1]
     hypothesis = extended(one.hypothesis, effect, data)
     mine, its = (list(f.hypothesis.causes[-1].parameters) for f in (one, other))
-    starts = (
+    starts = [
         one.params,
         other.params,
         changed(one.params, its, np.array([other.params[n] for n in its])),
         changed(other.params, mine, np.array([one.params[n] for n in mine])),
-    )
+    ]
+    if step is not None:
+        starts.append(changed(one.params, its, np.array([step.params[n] for n in its])))
     runs = data.identify
     left = [_of_residual(residual_of(runs, start), data) for start in starts]
     start = starts[int(np.argmin(left))]

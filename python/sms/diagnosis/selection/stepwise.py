@@ -24,7 +24,6 @@ from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import (
     ROLES,
     Left,
-    beyond_healthy,
     logarithms,
     nothing_left,
     small,
@@ -34,10 +33,9 @@ from sms.diagnosis.hypothesis import Data, Fitted, fit, looked_at_again, refitte
 from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
 from sms.diagnosis.selection.finite_steps import (
     Step,
-    best_step,
+    best_steps,
     chosen_by_step,
     extended,
-    telling_windows,
 )
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.judgement import (
@@ -45,6 +43,7 @@ from sms.diagnosis.selection.judgement import (
     channel_of_its_own,
     implausible,
     judge,
+    with_substitutes,
 )
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.pairs import try_pairs
@@ -74,11 +73,7 @@ def try_effects(
     scores = score_effects(current, data, effects, rng)
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
-    base = _base(current, data)
-    left = beyond_healthy(data, data.identify, residual_of(data.identify, base))
-    excerpt = data.identify.excerpt(telling_windows(data.identify, left))
-    here = logarithms(excerpt, residual_of(excerpt, base))
-    steps = [best_step(e, current, base, data, excerpt, here) for e in effects]
+    steps = best_steps(effects, current, data)
     by_step = chosen_by_step(steps)
     by_slope = [int(k) for k in np.argsort(-promise)[:TRIED_BY_SLOPE] if promise[k] > 0.0]
     chosen = list(dict.fromkeys(by_step + by_slope))
@@ -119,16 +114,6 @@ def try_effects(
             trial.reason = "promises less than others of this round, by slope and by finite steps"
         trials.append(trial)
     return current, trials
-
-
-def _base(current: Fitted, data: Data) -> _core.Params:
-    """Where finite steps are tried from: the model as it stands. Where records of the healthy machine told its numbers,
-    they are held there: a change that other numbers have made up for is then in plain sight.
-    """
-    if data.healthy is None:
-        return current.params
-    known = list(current.hypothesis.known)
-    return changed(current.params, known, np.array([current.hypothesis.start[n] for n in known]))
 
 
 def _fitted(
@@ -203,6 +188,9 @@ def stepwise_selection(
         for members in found_now:
             members[0].fitted = current
         remaining = [e for e in remaining if all(e is not m[0].effect for m in found_now)]
+    last = max((k for k, r in enumerate(rounds) if r.members), default=None)
+    if last is not None:  # what an earlier round could not tell apart, a later cause may have
+        rounds[last] = with_substitutes(rounds[last], data)
     found = [r.members for r in rounds if r.members]
     while (beyond := _implausible(found, current, data)) is not None:
         found = [m for m in found if m is not beyond]

@@ -1,0 +1,62 @@
+"""Parts of the selection by themselves: how reference records scatter, and which rivals share a class."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from sms.diagnosis.reference import _inflation
+from sms.diagnosis.selection import judgement
+from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.outcome import Round
+from sms.estimation.windows import Runs
+
+from validation.random_cases import draw
+
+BLOCKS, SAMPLES, PARAMETERS = 60, 100, 6
+
+
+def inflation(residual: Any, weak: int = 0) -> float:
+    """Of least squares with some parameters that the records hardly see, and that are declared."""
+    random = np.random.default_rng(1)
+    jacobian = random.normal(size=(len(residual), PARAMETERS + weak))
+    # What acts all through a block, as most parameters of a plant do.
+    jacobian += 2.0 * np.repeat(random.normal(size=(BLOCKS, PARAMETERS + weak)), SAMPLES, axis=0)
+    jacobian[:, PARAMETERS:] *= 1e-6
+    runs = SimpleNamespace(block=np.repeat(np.arange(BLOCKS), SAMPLES))
+    return _inflation(jacobian, residual, 0.1 * np.eye(PARAMETERS + weak), cast(Runs, runs))
+
+
+@pytest.mark.parametrize("weak", [0, 12])
+def test_reference_records_inflate_a_variance_by_what_lasts_through_a_block(weak: int) -> None:
+    """And what they do not tell of has no say in it: it was a factor of 40 instead of 20 with thirty such numbers."""
+    random = draw("inflation")
+    white = random.normal(size=BLOCKS * SAMPLES)
+    lasting = np.repeat(random.normal(size=BLOCKS), SAMPLES)
+    assert 1.0 <= inflation(white, weak) < 1.6
+    # Of a residual that is half constant in a block, scores along columns that are so too scatter
+    # by 0.5 x 0.8 x SAMPLES times their information.
+    expected = 0.5 + 0.5 * 0.8 * SAMPLES
+    found = inflation(np.sqrt(0.5) * (white + lasting), weak)
+    assert 0.5 * expected < found < 2.0 * expected
+
+
+def test_what_is_no_worse_than_the_last_cause_shares_its_class(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    worse = {"c"}
+    monkeypatch.setattr(judgement, "_no_worse", lambda t, best, data: t.effect not in worse)
+
+    def trial(effect: str, lower: float, accepted: bool = True) -> Trial:
+        made = Trial(cast(Any, effect), cast(Any, None), 0.0, np.zeros(1))
+        made.accepted, made.lower = accepted, lower
+        return made
+
+    trials = [trial(e, n) for n, e in enumerate("abcdef")] + [trial("z", 9.0, accepted=False)]
+    best = trials[0]
+    members = judgement.with_substitutes(Round(trials, [best]), cast(Any, None)).members
+    # c is worse, z was not accepted; of the others the best two.
+    assert [t.effect for t in members] == ["a", "f", "e"]
+    assert all(t.support == pytest.approx(1.0 / 3.0) for t in members)
