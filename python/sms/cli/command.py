@@ -120,8 +120,13 @@ def main() -> None:
     try:
         app()
     except InputError as problem:
-        print(f"sms: {problem}", file=sys.stderr)
+        print(f"sms: {_in_one_line(str(problem))}", file=sys.stderr)
         sys.exit(BAD_INPUT)
     except KeyboardInterrupt:
         print("sms: stopped; nothing was written", file=sys.stderr)
         sys.exit(130)
+
+
+def _in_one_line(sentence: str) -> str:
+    """A sentence quotes what a file holds: a line's end or another control character in it is shown as its code."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in sentence)

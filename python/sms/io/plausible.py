@@ -20,6 +20,7 @@ from sms.io.unit_slips import remedy as unit_remedy
 OVERSHOOT_NOTE, OVERSHOOT_WARNING, OVERSHOOT_ERROR = 0.01, 0.25, 1.0  #: shares of the stroke
 TRAVEL = (0.15, 1.05)  #: of a run over the stroke: what tells one unit of length from the next
 NO_AIR = 0.05  #: of ambient: no chamber of a working machine stays below it
+ABSURD = 100.0  #: times the usual range, beyond it: no sensor reads that
 FORCE_RATIO = 5.0  #: how much better another reading must explain the force to be suggested
 
 
@@ -70,7 +71,7 @@ def usual_range(rig: Rig, record: Record) -> Iterator[Finding]:
             continue
         worst = int(np.nanargmax(beyond))
         yield record.finding(
-            "warning",
+            "error" if beyond[worst] > ABSURD * (usual.high - usual.low) else "warning",
             worst + rig.skip_first,
             signal,
             f"{values[worst]:.4g} {usual.unit} lies outside what such a sensor usually reads, {usual.low:g} to "

@@ -10,6 +10,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+LARGEST_NUMBER = 1e50
+"""A cell beyond it is as little a reading as "inf": no unit makes it one, and its powers overflow."""
+
 
 @dataclass(frozen=True)
 class Remark:
@@ -38,7 +41,7 @@ class Table:
         numeric = pd.api.types.is_numeric_dtype(cells) and not pd.api.types.is_bool_dtype(cells)
         plain = cells if numeric else cells.astype(str).str.strip()
         values = np.array(pd.to_numeric(plain, errors="coerce"), dtype=np.float64)
-        bad = np.flatnonzero(~np.isfinite(values))
+        bad = np.flatnonzero(~(np.abs(values) < LARGEST_NUMBER))
         texts = ["" if pd.isna(cells.iloc[i]) else str(cells.iloc[i]).strip() for i in bad]
         values[bad] = np.nan
         return values, [(int(i), text) for i, text in zip(bad, texts, strict=True)]

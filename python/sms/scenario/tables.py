@@ -5,7 +5,6 @@ The models derive from `sms.io.schema.Table`, in which an unknown key is an erro
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import UnionType
@@ -14,7 +13,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from sms.errors import InputError, nearest
-from sms.io.schema import Table
+from sms.io.schema import Table, parse_toml
 from sms.io.units import to_si
 
 Model = TypeVar("Model", bound=Table)
@@ -42,10 +41,7 @@ def read_toml(path: Path, what: str) -> dict[str, Any]:
         raise InputError(f"{path}: not a text file in UTF-8; a {what} is TOML text") from None
     except OSError as problem:
         raise InputError(f"{path}: cannot be read ({problem.strerror})") from None
-    try:
-        tables = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise InputError(f"{path}: not valid TOML: {problem}; correct it there") from None
+    tables = parse_toml(text, path)
     if not tables:
         raise InputError(f"{path}: the {what} file is empty; docs/simulation.md shows one")
     return tables
