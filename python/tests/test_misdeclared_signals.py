@@ -58,7 +58,7 @@ def test_a_right_declaration_is_left_alone(healthy: Path, leaking: Path) -> None
     ("slip", "signal", "line"),
     [
         (lambda x: {LOWER: x[LOWER] - AMBIENT, UPPER: x[UPPER] - AMBIENT}, LOWER,
-         f"write gauge = true in [signals] {LOWER} and of every other pressure"),
+         f"write gauge = true in [signals] {LOWER}, and so of every other chamber pressure"),
         (lambda x: {UPPER: x[UPPER] - AMBIENT}, UPPER, f"write gauge = true in [signals] {UPPER}"),
         (lambda x: {LOWER: x[UPPER], UPPER: x[LOWER]}, LOWER, "exchange the columns"),
         (lambda x: {"extension": 0.4 - x["extension"]}, "extension",

@@ -14,13 +14,12 @@ import numpy as np
 from sms.io.records import Finding, Record, Severity
 from sms.io.rig import Rig
 from sms.io.signals import SIGNALS, is_pressure, without_leg
-from sms.io.unit_slips import LENGTHS, likely_unit, unit_of_pressure
+from sms.io.unit_slips import LENGTHS, largest_unit, unit_of_pressure
 from sms.io.unit_slips import remedy as unit_remedy
 
 OVERSHOOT_NOTE, OVERSHOOT_WARNING, OVERSHOOT_ERROR = 0.01, 0.25, 1.0  #: shares of the stroke
-TRAVEL = (0.15, 1.05)  #: of a run over the stroke: what tells one unit of length from the next
 NO_AIR = 0.05  #: of ambient: no chamber of a working machine stays below it
-ABSURD = 100.0  #: times the usual range, beyond it: no sensor reads that
+ABSURD = 1e6  #: times the usual range, beyond it: more than any slip of a unit
 FORCE_RATIO = 5.0  #: how much better another reading must explain the force to be suggested
 
 
@@ -95,8 +94,14 @@ def extension_range(rig: Rig, record: Record, signal: str = "extension") -> Iter
     if share > OVERSHOOT_WARNING:
         severity = "error" if share > OVERSHOOT_ERROR else "warning"
     origin = "" if "stroke" in rig.parameters else ", the default"
-    travel = float(np.nanmax(extension) - np.nanmin(extension))
-    unit = likely_unit(rig, signal, LENGTHS, lambda f: TRAVEL[0] < f * travel / stroke < TRAVEL[1])
+    ends = float(np.nanmin(extension)), float(np.nanmax(extension))
+    beyond_by = OVERSHOOT_NOTE * stroke
+    unit = largest_unit(
+        rig,
+        signal,
+        LENGTHS,
+        lambda f: -beyond_by <= f * ends[0] and f * ends[1] <= stroke + beyond_by,
+    )
     yield record.finding(
         severity,
         worst + rig.skip_first,
@@ -104,7 +109,7 @@ def extension_range(rig: Rig, record: Record, signal: str = "extension") -> Iter
         f"{1e3 * extension[worst]:.1f} mm lies outside 0 to {1e3 * stroke:g} mm (the stroke"
         f"{origin}) by {100 * share:.0f} %",
         "check its zero (offset), its unit, and the stroke in [parameters]"
-        if unit is None or TRAVEL[0] < travel / stroke < TRAVEL[1]
+        if unit is None or share <= OVERSHOOT_ERROR
         else unit_remedy(rig, signal, unit),
     )
 

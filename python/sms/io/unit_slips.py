@@ -18,7 +18,7 @@ USUAL_STEP = (5e-4, 5e-2)
 """s between two samples, of a logger beside a pneumatic machine: 2 kHz to 20 Hz."""
 
 TIMES = ("us", "ms", "s", "min")
-LENGTHS = ("mm", "cm", "m", "inch")
+LENGTHS = ("mm", "cm", "m")
 PRESSURES = ("Pa", "hPa", "kPa", "MPa", "bar", "psi")
 
 
@@ -35,10 +35,23 @@ def likely_unit(
 
     fits: whether readings that are so many times as large are those of a working machine.
     """
+    fitting = _fitting(rig, signal, units, fits)
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def largest_unit(
+    rig: Rig, signal: str, units: Sequence[str], fits: Callable[[float], bool]
+) -> str | None:
+    """The same, of several the largest; units: from small to large."""
+    return next(reversed(_fitting(rig, signal, units, fits)), None)
+
+
+def _fitting(
+    rig: Rig, signal: str, units: Sequence[str], fits: Callable[[float], bool]
+) -> list[str]:
     si, declared = SIGNAL_UNITS[signal], declared_unit(rig, signal)
     now = to_si(f"1 {declared}", si, signal)
-    fitting = [u for u in units if u != declared and fits(to_si(f"1 {u}", si, signal) / now)]
-    return fitting[0] if len(fitting) == 1 else None
+    return [u for u in units if u != declared and fits(to_si(f"1 {u}", si, signal) / now)]
 
 
 def remedy(rig: Rig, signal: str, unit: str) -> str:

@@ -3,8 +3,8 @@
 Such a slip moves readings by more than any effect of the machine does, and a fit would make a physical cause of it. But
 it is discrete: once it is undone the declared model predicts the records, and nothing need be fitted for that. So every
 slip that the signals of a rig allow is undone in turn, and what the declared model then leaves is compared with what it
-left before. It is said where that takes nearly all of the squares, and something in nearly every window: a machine's
-own effect is not taken away by a change whose size nobody chose.
+left before. It is said where that takes most of the squares, and something in nearly every window: a machine's own
+effect is not taken away by a change whose size nobody chose.
 
 A stretched axis of time is harder to see, because conductances and volumes make up for it. It is asked for only where
 no logger has the rate of the record, and then the rates that loggers have are tried.
@@ -32,11 +32,14 @@ from sms.io.signals import is_pressure, label, without_leg
 SCREENED = 12
 """Windows in which every slip is tried before the likeliest is tried in all. Run time."""
 RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.0, 2.0, 2.5, 4.0, 5.0, 8.0)]
-"""Hz, that loggers have."""
+"""Hz, that most loggers have."""
+OTHER_RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.2, 1.25, 1.5, 1.6, 2.4, 3.0, 6.0, 7.5)]
+OTHER_RATES += [2.0**k for k in range(1, 11)]
+"""Hz, that some have."""
 STRETCHED = 1.3
 """By how much an axis of time may be stretched, or squeezed: more is another unit (io/unit_slips.py)."""
-WHOLE = 2e-4
-"""Of a rate: what a whole number of hertz or of milliseconds may be off by. Stamps are rounded, quartz is better."""
+ROUNDED = 2e-3
+"""Of a rate: what it may be off by. Stamps are rounded to a millisecond or a part of it; quartz is better."""
 
 FOLLOWED = 0.05
 """Of a position's variance within a window: what a model of the same machine leaves at most. Judgement, from data of
@@ -54,8 +57,8 @@ class Slip:
     looks_like: str
     remedy: str
     undone: Callable[[Run], Run]
-    least: float = NEARLY_ALL
-    """Share of the squares, and of the windows, from which it is believed."""
+    windows: float = NEARLY_ALL
+    """Share of the windows that have to be better for it to be believed."""
 
 
 def misdeclared_signals(data: Data, start: _core.Params) -> tuple[Finding, ...]:
@@ -70,12 +73,12 @@ def misdeclared_signals(data: Data, start: _core.Params) -> tuple[Finding, ...]:
     after = [_left(_undone(excerpt, slip), start) for slip in slips]
     best = min(range(len(slips)), key=lambda k: float(np.mean(np.log1p(after[k]))))
     slip = slips[best]
-    if not _believed(before, after[best], slip.least):
+    if not _believed(before, after[best], slip.windows):
         return ()
     taken = []
     for runs in (data.identify, data.validate):
         here, there = _left(runs, start), _left(_undone(runs, slip), start)
-        if not _believed(here, there, slip.least):
+        if not _believed(here, there, slip.windows):
             return ()
         taken.append(1.0 - float(np.mean(there) / np.mean(here)))
     return (
@@ -100,12 +103,13 @@ def _left(runs: Runs, start: _core.Params) -> Array:
     return energies(runs, residual_of(runs, start))
 
 
-def _believed(before: Array, after: Array, least: float) -> bool:
-    """Whether so much of the squares goes, and in so many windows something; windows are paired by place."""
+def _believed(before: Array, after: Array, windows: float) -> bool:
+    """Whether most of the squares go, and in so many windows something; windows are paired by place."""
     place = (np.arange(len(before)) + 0.5) / len(before)
     paired = after[np.minimum((place * len(after)).astype(int), len(after) - 1)]
     better = np.log1p(paired).sum(axis=1) < np.log1p(before).sum(axis=1)
-    return bool(np.mean(after) <= (1.0 - least) * np.mean(before) and np.mean(better) >= least)
+    most = np.mean(after) <= (1.0 - LEAST_SHARE) * np.mean(before)
+    return bool(most and np.mean(better) >= windows)
 
 
 # ---- the rig file of another machine ---------------------------------------------------------------
@@ -174,14 +178,18 @@ def _with(change: Callable[[Signals], dict[str, Array]]) -> Callable[[Run], Run]
 def _gauge(rig: Rig, run: Run, pressures: list[str]) -> Iterator[Slip]:
     """Gauge pressures declared as absolute, or the reverse: one sensor's, or all."""
     ambient = rig.declared("ambient_pressure").value
-    for group in [[s] for s in pressures] + ([pressures] if len(pressures) > 1 else []):
+    chambers = [s for s in pressures if s.startswith("chamber_pressure")]
+    groups = [[s] for s in pressures] + [g for g in (chambers, pressures) if len(g) > 1]
+    for group in groups:
         gauge = [s in run.gauge for s in group]
         if len(set(gauge)) > 1:
             continue
         off = -ambient if gauge[0] else ambient
         now, then = ("gauge", "absolute") if gauge[0] else ("absolute", "gauge")
-        whose = label(group[0]) if len(group) == 1 else "every pressure"
-        each = "" if len(group) == 1 else " and of every other pressure"
+        whose, each = label(group[0]), ""
+        if len(group) > 1:
+            every = "chamber pressure" if group is chambers else "pressure"
+            whose, each = f"every {every}", f", and so of every other {every}"
         yield Slip(
             group[0],
             f"{whose} is declared as {now} and looks like {then}",
@@ -231,7 +239,7 @@ def _exchanged(signals: list[str]) -> Iterator[Slip]:
 def _stretched(rig: Rig, run: Run) -> Iterator[Slip]:
     """A clock that runs fast or slow, where the record has a rate that no logger has."""
     rate = 1.0 / run.step
-    if any(abs(x - round(x)) <= WHOLE * x for x in (rate, 1e3 * run.step)):
+    if any(abs(rate - usual) <= ROUNDED * usual for usual in RATES + OTHER_RATES):
         return
     for usual in RATES:
         if 1.0 / STRETCHED < usual / rate < STRETCHED:

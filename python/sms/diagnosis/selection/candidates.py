@@ -105,6 +105,12 @@ def room_of(effect: Effect, params: _core.Params, rig: Rig) -> tuple[float, floa
     return low - params[name], high - params[name]
 
 
+def moved(effect: Effect, params: _core.Params, change: float, rig: Rig) -> float:
+    """The effect's parameter so much larger, within its bounds whatever the sum is rounded to."""
+    name = effect.parameters[0]
+    return float(np.clip(params[name] + change, rig.table[name].lower, rig.table[name].upper))
+
+
 def _unit(columns: Array) -> Array:
     return np.asarray(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
 

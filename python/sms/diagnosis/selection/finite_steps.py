@@ -15,7 +15,7 @@ from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import beyond_healthy, energies, logarithms
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Hypothesis, residual_of
-from sms.diagnosis.selection.candidates import room_of
+from sms.diagnosis.selection.candidates import moved, room_of
 from sms.diagnosis.thresholds import FINITE_STEPS, STEPPED_ON, TRIED_BY_STEP, TWINS
 from sms.estimation.least_squares import Free, changed, fit_windows
 from sms.estimation.windows import Runs
@@ -79,18 +79,17 @@ def best_step(
     base: what all else is held at, which leaves `here` of the excerpt.
     """
     name = effect.parameters[0]
-    now = base[name]
     before = residual_of(excerpt, base)
     nothing = Step(0.0, base, np.zeros(len(before)))
     # The first of several parameters may help only with another value of the others.
     best = nothing if len(effect.parameters) == 1 else Step(-np.inf, base, nothing.change)
     low, high = room_of(effect, base, data.rig)
-    ladders = [[now + part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
+    ladders = [[part * end for part in FINITE_STEPS] for end in (low, high) if end != 0.0]
     if low > 0.0 or high < 0.0:  # what is plausible begins away from here
-        ladders = [[now + low], [now + high]]
+        ladders = [[low], [high]]
     for ladder in ladders:
-        for value in ladder:
-            params = changed(base, [name], np.array([value]))
+        for change in ladder:
+            params = changed(base, [name], np.array([moved(effect, base, change, data.rig)]))
             residual = residual_of(excerpt, params)
             if not np.all(np.isfinite(residual)):
                 continue

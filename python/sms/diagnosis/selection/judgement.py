@@ -191,7 +191,7 @@ def alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]
         if cosine > TWINS and _no_worse(trial, best, data):
             members.append(trial)
     members = _plainest(members)
-    for trial in members:
+    for trial in accepted:
         _similarity(members[0], trial, current, data)
         trial.support = 1.0 / len(members)
     return members

@@ -30,7 +30,7 @@ from sms.diagnosis.adequacy.residual_energy import (
 )
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, looked_at_again, refitted, residual_of
-from sms.diagnosis.selection.candidates import Trial, room_of, score_effects
+from sms.diagnosis.selection.candidates import Trial, moved, room_of, score_effects
 from sms.diagnosis.selection.finite_steps import (
     Step,
     best_steps,
@@ -126,8 +126,8 @@ def _fitted(
     if allowed is not None and step.gain > 0.0:
         return fit(hypothesis, data.identify, step.params, most_steps, discrepancy=allowed)
     name = effect.parameters[0]
-    now = current.params[name]
-    linear = now + float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
+    step_by_slope = float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
+    linear = moved(effect, current.params, step_by_slope, data.rig)
     linear = linear if effect.step is None else max(linear, 0.1 * effect.step)
     best: tuple[float, _core.Params] | None = None
     starts = [changed(current.params, [name], np.array([linear]))]
