@@ -153,3 +153,13 @@ def test_signals_that_a_record_needs_are_asked_for(tmp_path: Path) -> None:
     rig = load_rig(path)
     with pytest.raises(InputError, match=r"run1.csv: there is no column for the signal 'setpoint'"):
         load_record(rig, rig.records[1])
+
+
+def test_a_period_that_does_not_fit_the_records_step_is_said(tmp_path: Path) -> None:
+    path = write_bench(tmp_path, 1, {}, in_loop=True)
+    text = path.read_text().replace("[parameters]\n", '[parameters]\ncontrol_period = "7.3 ms"\n')
+    path.write_text(text)
+    rig = load_rig(path)
+    data = make_data(rig, [load_record(rig, source) for source in rig.records])
+    with pytest.raises(InputError, match="one has to be a whole multiple of the other"):
+        _ = data.identify.problem

@@ -15,6 +15,7 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array, Index
+from sms.errors import InputError
 from sms.estimation.block_statistics import merge_windows
 from sms.estimation.chosen_windows import without_clipped
 from sms.estimation.discrepancy import Discrepancy, Whitened
@@ -57,8 +58,12 @@ class Runs:
 
     @cached_property
     def simulation(self) -> WindowProblem:
-        """The records as the core's problem."""
-        return self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+        """The records as the core's problem; InputError for what it refuses."""
+        try:
+            return self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+        except ValueError as problem:
+            names = ", ".join(f"{number}: {run.name}" for number, run in enumerate(self.motions))
+            raise InputError(f"{self.rig.path}: {problem} (records {names})") from None
 
     @cached_property
     def problem(self) -> WindowProblem:
