@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <string>
 
 #include "geometry_hash.hpp"
 #include "options.hpp"
@@ -95,12 +96,20 @@ ExitCode run(const Options& options) {
   return kWritten;
 }
 
+// A word of the command line may hold a line's end; what is said of it is one line.
+std::string in_one_line(std::string text) {
+  for (char& c : text) {
+    c = static_cast<unsigned char>(c) < ' ' || c == 127 ? '?' : c;
+  }
+  return text;
+}
+
 int main_of(const std::vector<std::string>& arguments) {
   try {
     const std::optional<Options> options = parse(arguments);
     return options ? run(*options) : kWritten;
   } catch (const BadInput& mistake) {
-    std::fprintf(stderr, "ik_tables: %s\n", mistake.what());
+    std::fprintf(stderr, "ik_tables: %s\n", in_one_line(mistake.what()).c_str());
   } catch (const std::bad_alloc&) {
     std::fputs("ik_tables: the table does not fit into memory; choose a larger --step\n", stderr);
   } catch (const std::exception& error) {

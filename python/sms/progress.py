@@ -18,7 +18,12 @@ def progress_bar(
     text: str, stopped: str = "nothing was written"
 ) -> Iterator[Callable[[str, float], None]]:
     """A bar on stderr; what it gives is told (what is done now, the share). Ctrl-C ends it."""
-    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn()
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TimeRemainingColumn(),
+    )
     try:
         with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
             task = progress.add_task(text, total=1.0)

@@ -9,18 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from cli_support import sms
 from test_diagnosis_cylinder import make_rig
-
-
-def sms(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "sms.cli", *arguments],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | {"COLUMNS": "100"},
-    )
 
 
 def refused(result: subprocess.CompletedProcess[str], *words: str) -> None:
@@ -30,6 +20,20 @@ def refused(result: subprocess.CompletedProcess[str], *words: str) -> None:
     assert len(result.stderr.strip().splitlines()) == 1, result.stderr
     for word in words:
         assert word in result.stderr
+
+
+def test_the_command_as_a_user_starts_it(tmp_path: Path) -> None:
+    started = subprocess.run(
+        [sys.executable, "-m", "sms.cli", "diagnose", "missing.toml", "--out", "o"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"COLUMNS": "100"},
+    )
+    refused(started, "missing.toml", "there is no such rig file")
+    again = sms("diagnose", "missing.toml", "--out", "o", cwd=tmp_path)
+    assert (again.returncode, again.stdout, again.stderr) == (2, "", started.stderr)
 
 
 def test_a_diagnosis_writes_three_files_and_prints_the_verdict(tmp_path: Path) -> None:

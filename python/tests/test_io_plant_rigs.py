@@ -262,3 +262,16 @@ def test_more_samples_than_a_diagnosis_holds_are_refused(
     path = bench(tmp_path, BENCH.replace('"test"', '"validate"'))
     with pytest.raises(InputError, match="2400 samples in 2 records; a diagnosis holds 2399"):
         read_and_check(load_rig(path))
+
+
+@pytest.mark.parametrize(
+    ("step", "warned"), [(0.005, False), (0.0055, True), (1.0 / 60.0, False), (0.011, True)]
+)
+def test_a_rate_that_no_logger_has_is_said(tmp_path: Path, step: float, warned: bool) -> None:
+    path = bench(tmp_path, time=step * np.arange(1200))
+    rig = load_rig(path)
+    found = check_record(rig, load_record(rig, rig.records[0]))
+    assert (
+        any("no logger has" in f.message and "scale = 0.909091" in f.remedy for f in found)
+        is warned
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import os
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from sms.io import (
     write_table,
     write_text_atomically,
 )
+from sms.io.write import write_bytes_atomically
 from sms.parameters import PARAMETERS
 
 from validation.random_cases import draw
@@ -135,6 +137,9 @@ def test_random_values_of_every_parameter_survive(tmp_path: Path) -> None:
         name: Declaration(float(random.uniform(p.lower, p.upper)), float(random.uniform(0, 1)))
         for name, p in PARAMETERS.items()
     }
+    rod, bore = PARAMETERS["rod_diameter"], updates["bore_diameter"].value
+    within = float(random.uniform(rod.lower, min(rod.upper, 0.99 * bore)))
+    updates["rod_diameter"] = Declaration(within, 0.01)
     original = write_rig(tmp_path)
     write_extended_rig(original, tmp_path / "e.toml", updates, "all")
     written = load_rig(tmp_path / "e.toml")
@@ -171,3 +176,16 @@ def test_a_wrong_update_writes_nothing(
     for word in words:
         assert word in str(caught.value)
     assert not (tmp_path / "e.toml").exists()
+
+
+def test_what_is_no_file_is_written_to_and_stays(tmp_path: Path) -> None:
+    """Run as root, a table written to /dev/null took its place."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_bytes_atomically(pipe, b"1,2\n")
+    assert os.read(reader, 10) == b"1,2\n"
+    os.close(reader)
+    assert [p.name for p in tmp_path.iterdir()] == ["pipe"]
+    write_bytes_atomically(Path("/dev/null"), b"nothing")
+    assert Path("/dev/null").is_char_device()

@@ -22,7 +22,9 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 from sms.diagnosis import diagnose
+from sms.diagnosis.pipeline import read_and_check
 from sms.errors import InputError
+from sms.io import load_rig
 from sms.io.write import write_text_atomically
 
 from validation.trials.bad_input import records, spoil
@@ -113,7 +115,8 @@ def said_before_fitting(rig: Path) -> str:
     except InputError as problem:
         return str(problem)
     except _UnderWayError:
-        return ""
+        warned = read_and_check(load_rig(rig))[1]
+        return " ".join(f.remedy for f in warned if f.severity == "warning")
     return (
         f"{answer.sentence} {' '.join(f.remedy for f in answer.findings if f.severity == 'error')}"
     )

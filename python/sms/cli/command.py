@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import sys
 from pathlib import Path
@@ -86,7 +87,7 @@ def diagnose(
     from sms.report.files import write_diagnosis  # noqa: PLC0415
 
     check_output_folder(out)
-    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn()
+    columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("reading records", total=1.0)
         answer = run(
@@ -102,7 +103,8 @@ def diagnose(
         return
     console = Console()
     print_diagnosis(answer, console)
-    console.print(f"[dim]written: {', '.join(str(f) for f in files)}[/dim]", soft_wrap=True)
+    written = f"written: {', '.join(str(f) for f in files)}"
+    console.print(written, style="dim", soft_wrap=True, markup=False)
 
 
 mechanism.register(app)
@@ -117,6 +119,10 @@ validate.register(app)
 
 def main() -> None:
     """Run the command; a person's bad input is one sentence and exit code 2."""
+    if isinstance(
+        sys.stdout, io.TextIOWrapper
+    ):  # of a name or a unit that the terminal has no letters for
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         app()
     except InputError as problem:

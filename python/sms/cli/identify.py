@@ -210,7 +210,7 @@ def spool(
 @contextmanager
 def _progress(first: str) -> Iterator[Any]:
     """A bar on the terminal; yields update(text, share done)."""
-    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn()
+    columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
     with Progress(*columns, console=Console(file=sys.stderr), transient=True) as progress:
         task = progress.add_task(first, total=1.0)
         yield lambda text, done: progress.update(task, description=text, completed=done)

@@ -49,7 +49,7 @@ def limits(
     out.mkdir(parents=True, exist_ok=True)
     write_text_atomically(out / "limits.csv", as_csv(found))
     write_text_atomically(out / "limits.html", limits_html(found))
-    console = Console()
+    console = Console(markup=False)  # a title that its owner chose may look like it
     for number, title in enumerate(found.experiments, 1):
         console.print(f"{number}  {title}")
     table = table_of(found)
@@ -58,7 +58,7 @@ def limits(
     console.width = max(console.width, Measurement.get(console, wide, table).maximum)
     console.print(table)
     console.print(
-        f"[dim]written: {out / 'limits.html'}, {out / 'limits.csv'}[/dim]", soft_wrap=True
+        f"written: {out / 'limits.html'}, {out / 'limits.csv'}", style="dim", soft_wrap=True
     )
 
 

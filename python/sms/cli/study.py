@@ -155,4 +155,4 @@ def print_table(headers: tuple[str, ...], rows: list[list[str]]) -> None:
         shown.add_column(header, overflow="fold")  # a narrow terminal breaks a word, and loses none
     for row in rows:
         shown.add_row(*row)
-    Console().print(shown)
+    Console(markup=False).print(shown)

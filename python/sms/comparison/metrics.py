@@ -116,9 +116,9 @@ def frequency_response(
     rate = 1.0 / period
     frequency, cross = csd(source, answer, rate, nperseg=length)
     _, power = welch(source, rate, nperseg=length)
-    _, coherence = coherence_of(source, answer, rate, nperseg=length)
     excited = power > _EXCITED * power.max()
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):  # of what has no power
+        _, coherence = coherence_of(source, answer, rate, nperseg=length)
         ratio = np.where(excited, cross / power, 0.0)[1:]
     return FrequencyResponse(
         frequency=np.asarray(frequency)[1:],

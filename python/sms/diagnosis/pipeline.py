@@ -101,9 +101,7 @@ def read_and_check(rig: Rig) -> tuple[list[Record], tuple[Finding, ...]]:
         record = load_record(rig, source)
         record = thinned(record) if rig.kind in KINDS else record
         found = data_check.check_record(rig, record)
-        data_check.raise_if_unusable(
-            [f for f in found if f in record.findings or f.signal in ("time", None)]
-        )
+        data_check.raise_if_unreadable(record, found)
         records.append(record)
         findings += [
             Finding(f.severity, f.file.name, f.line, f.signal, f.message, f.remedy) for f in found

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sms import _core
+from sms import OutOfRangeError, _core
 from sms.arrays import Array
 from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.identification.flow_known import Contribution, Known, budget_of, known_of
@@ -96,7 +96,13 @@ def fit_record(
     look = look_at(record)
     if look.faults:
         return FlowFit(record, look, None, {}, {}, (), None, np.nan, np.nan, heat)
-    base = start_of(record, look, machine or declared_params(declared))
+    try:
+        base = start_of(record, look, machine or declared_params(declared))
+    except OutOfRangeError as beyond:
+        fault = f"it is no charge or discharge of this tank ({beyond}); check the units of time and pressure"
+        return FlowFit(
+            record, replace(look, faults=(fault,)), None, {}, {}, (), None, np.nan, np.nan, heat
+        )
     starts = [
         with_start(base, component_critical_ratio=b, component_subsonic_index=m) for b, m in STARTS
     ]

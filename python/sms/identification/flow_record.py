@@ -75,7 +75,7 @@ def look_at(record: FlowRecord) -> Look:
     faults, notes = [], []
     if p.size < 8:
         faults.append(f"{p.size} samples are too few for a transient")
-    if abs(change) < MOVES * noise:
+    if abs(change) <= MOVES * noise:
         faults.append(
             f"the pressure does not move ({abs(change):.0f} Pa of change, {noise:.0f} Pa of noise): "
             "the valve stayed closed, or the sensor is not connected; nothing can be identified"

@@ -7,6 +7,7 @@ sees a whole log or none, whatever stops the recording.
 from __future__ import annotations
 
 import gzip
+import logging
 import secrets
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -32,6 +33,7 @@ _READERS: Mapping[str, type[can.io.generic.MessageReader]] = MappingProxyType(
         ".db": can.SqliteReader,
     }
 )
+LATEST = 1e11  #: s, of a frame; loggers count from 1970 at the earliest
 _NEVER_PACKED = (can.BLFReader, can.MF4Reader, can.SqliteReader)
 _NEEDS_MF4 = "MF4 needs one more package: pip install 'sms[can]', or use .blf"
 
@@ -46,12 +48,16 @@ def read_frames(file: Path) -> Iterator[can.Message]:
         raise InputError(f"{file}: not a CAN log (known endings: {', '.join(_READERS)})")
     if not file.is_file():
         raise InputError(f"{file}: there is no such log; check the path")
+    for library in ("can", "asammdf"):  # what they would print stands in the sentence below
+        logging.getLogger(library).setLevel(logging.CRITICAL)
     # times as written, not shifted to the date of the header
     options = {"relative_timestamp": True} if reader is can.ASCReader else {}
     number = 0
     try:
         with _opened(file) as source, reader(source, **options) as log:
             for number, frame in enumerate(log, 1):  # noqa: B007 (named in the error below)
+                if not abs(frame.timestamp) < LATEST:
+                    raise ValueError("its time is none")
                 yield frame
     except NotImplementedError:
         raise InputError(f"{file}: {_NEEDS_MF4}") from None

@@ -75,6 +75,11 @@ def raise_if_unusable(findings: Sequence[Finding]) -> None:
         raise InputError(f"{errors[0]}{more}")
 
 
+def raise_if_unreadable(record: Record, findings: Sequence[Finding]) -> None:
+    """The same of what makes a file no record: cells that are no numbers, a clock that cannot be, too few samples."""
+    raise_if_unusable([f for f in findings if f in record.findings or f.signal in ("time", None)])
+
+
 def _time_order(rig: Rig, record: Record) -> Iterator[Finding]:
     """Time must run forward from sample to sample."""
     time = record.signals["time"]

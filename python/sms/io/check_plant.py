@@ -13,7 +13,7 @@ from sms.io.plausible import extension_range
 from sms.io.records import Finding, Record
 from sms.io.rig import Rig
 from sms.io.signals import SIGNALS, without_leg
-from sms.io.unit_slips import unit_of_time
+from sms.io.unit_slips import rates_nearby, stretched_remedy, unit_of_time
 
 JITTER = 0.02  #: of the median step; time is taken as even, loggers round their stamps
 LONGEST_STEP = (
@@ -60,6 +60,18 @@ def even_time(rig: Rig, record: Record) -> Iterator[Finding]:
             "time",
             f"the steps of time are uneven ({step[worst]:.4g} s here, {median:.4g} s in the middle)",
             "resample the record to one rate, or split it where samples were lost",
+        )
+        return
+    even = float(np.mean(step))
+    if nearby := rates_nearby(1.0 / even):
+        usual = min(nearby, key=lambda rate: abs(np.log(rate * even)))
+        yield record.finding(
+            "warning",
+            None,
+            "time",
+            f"one sample in {1e3 * even:.4g} ms, {1.0 / even:.4g} Hz, is a rate that no logger has: the axis of time "
+            f"may be stretched, from {usual:g} Hz",
+            stretched_remedy(rig, 1.0 / (even * usual)),
         )
 
 
@@ -120,6 +132,8 @@ def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
     for name, values in record.signals.items():
         if not _sweep(name) or without_leg(name) in ENDS or name in at_end:
             continue
+        if np.all(np.isnan(values)):  # which is said already
+            continue
         for extreme, word in ((np.nanmax(values), "largest"), (np.nanmin(values), "smallest")):
             share = float(np.mean(values == extreme))
             if share > CLIPPED_SHARE and np.ptp(values) != 0.0:
@@ -135,8 +149,8 @@ def clipped_channels(rig: Rig, record: Record) -> Iterator[Finding]:
 def _whole_seconds(record: Record, clipped: NDArray[np.bool_]) -> int:
     """How many seconds of a record hold no such sample."""
     time = record.signals["time"]
-    second = np.floor(time - time[0]).astype(int)
-    return int(np.sum(np.bincount(second, clipped, second[-1] + 1)[:-1] == 0))
+    _, second = np.unique(np.floor(time - time[0]), return_inverse=True)
+    return int(np.sum(np.bincount(second, clipped)[:-1] == 0))
 
 
 def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Finding]:
@@ -151,6 +165,8 @@ def driven_channels_that_hardly_move(rig: Rig, record: Record) -> Iterator[Findi
             continue
         command = record.signals[drive] - centre
         if min(float(command.max()), -float(command.min())) < OPENS:
+            continue
+        if np.all(np.isnan(values)):  # which is said already
             continue
         low, high = np.nanquantile(values, [0.05, 0.95])
         if high - low < MOVES * _sweep(name):

@@ -7,12 +7,21 @@ files) is the subject of rig.py.
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    ValidationError,
+)
 
 from sms.errors import InputError, did_you_mean, nearest
 
@@ -35,7 +44,9 @@ def is_finite(number: float) -> bool:
         return False
 
 
-TextOrNumber = Annotated[str | float, PlainValidator(_text_or_number)]
+TextOrNumber = Annotated[
+    str | float, PlainValidator(_text_or_number), PlainSerializer(lambda value: value)
+]
 
 
 def _short_form(key: str) -> BeforeValidator:
@@ -195,16 +206,29 @@ def read_rig_text(path: Path) -> str:
 
 def read_text(path: Path, what: str, least: str) -> str:
     """The text of a TOML file; InputError when it is missing, empty or not text. least: the tables that it needs."""
+    text = decoded(path, what, what)
+    if not text.strip():
+        raise InputError(f"{path}: the {what} is empty; it needs {least} at least")
+    return text
+
+
+LARGEST_TOML = 2**24  #: bytes; a rig of a thousand records has a hundredth of it
+
+
+def decoded(path: Path, what: str, file: str) -> str:
+    """The text of a TOML file; InputError when it is missing, no text, or endless. what, file: what it is called."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        with path.open("rb") as opened:
+            content = opened.read(LARGEST_TOML + 1)
+        text = content.decode("utf-8-sig")
     except FileNotFoundError:
-        raise InputError(f"{path}: there is no such {what}; check the path") from None
+        raise InputError(f"{path}: there is no such {file}; check the path") from None
     except UnicodeDecodeError:
         raise InputError(f"{path}: not a text file in UTF-8; a {what} is TOML text") from None
     except OSError as problem:
         raise InputError(f"{path}: cannot be read ({problem.strerror})") from None
-    if not text.strip():
-        raise InputError(f"{path}: the {what} is empty; it needs {least} at least")
+    if len(content) > LARGEST_TOML:
+        raise InputError(f"{path}: more than {LARGEST_TOML // 2**20} MiB, which no {what} has")
     return text
 
 
@@ -213,8 +237,14 @@ def parse_rig_text(text: str, path: Path) -> RigFile:
     return checked(RigFile, parse_toml(text, path), path)
 
 
+_DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){200}""")
+
+
 def parse_toml(text: str, path: Path) -> dict[str, Any]:
     """The tables of a TOML text; InputError where it is none."""
+    nested = f"{path}: arrays or tables in it are nested hundreds deep; correct it"
+    if _DEEP_KEY.search(text):  # takes the parser minutes
+        raise InputError(nested)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
@@ -222,9 +252,7 @@ def parse_toml(text: str, path: Path) -> dict[str, Any]:
     except ValueError:  # of int(), which refuses to read thousands of digits
         raise InputError(f"{path}: a number in it has thousands of digits; correct it") from None
     except RecursionError:
-        raise InputError(
-            f"{path}: arrays or tables in it are nested hundreds deep; correct it"
-        ) from None
+        raise InputError(nested) from None
 
 
 def checked(model: type[Model], tables: Mapping[str, Any], path: Path) -> Model:

@@ -17,6 +17,16 @@ from sms.io.units import split_column_name, to_si
 USUAL_STEP = (5e-4, 5e-2)
 """s between two samples, of a logger beside a pneumatic machine: 2 kHz to 20 Hz."""
 
+RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.0, 2.0, 2.5, 4.0, 5.0, 8.0)]
+"""Hz, that most loggers have."""
+OTHER_RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.2, 1.25, 1.5, 1.6, 2.4, 3.0, 6.0, 7.5)]
+OTHER_RATES += [2.0**k for k in range(1, 11)]
+"""Hz, that some have."""
+ROUNDED = 2e-3
+"""Of a rate: what it may be off by. Stamps are rounded to a millisecond or a part of it; quartz is better."""
+STRETCHED = 1.3
+"""By how much an axis of time may be stretched, or squeezed: more is another unit."""
+
 TIMES = ("us", "ms", "s", "min")
 LENGTHS = ("mm", "cm", "m")
 PRESSURES = ("Pa", "hPa", "kPa", "MPa", "bar", "psi")
@@ -74,3 +84,16 @@ def unit_of_pressure(rig: Rig, record: Record, signal: str) -> str | None:
     middle = float(np.nanmedian(record.used(rig, signal)))
     gauge = ambient if signal in record.gauge else 0.0
     return likely_unit(rig, signal, PRESSURES, lambda f: 0.5 * ambient < f * middle + gauge < 1.2e6)
+
+
+def rates_nearby(rate: float) -> list[float]:
+    """Hz: what a logger may have had whose records seem to have a rate that no logger has; none where one has it."""
+    if any(abs(rate - usual) <= ROUNDED * usual for usual in RATES + OTHER_RATES):
+        return []
+    return [usual for usual in RATES if 1.0 / STRETCHED < usual / rate < STRETCHED]
+
+
+def stretched_remedy(rig: Rig, factor: float) -> str:
+    """What to write where the axis of time has to be so many times as long."""
+    scale = rig.signals["time"].scale * factor
+    return f"check the clock; if it is that, write scale = {scale:.6g} in [signals] time"

@@ -37,10 +37,14 @@ def check_output_folder(out: Path) -> None:
 def write_bytes_atomically(path: Path, content: bytes) -> None:
     """Write a file so that a reader sees the old one or the new one, never a part.
 
-    The new one is written beside it and then takes its name. InputError when that cannot be done.
+    The new one is written beside it and then takes its name. What is no file (/dev/stdout, a pipe) is written to and
+    stays. InputError when that cannot be done.
     """
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
     try:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            path.write_bytes(content)
+            return
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             with temporary.open("xb") as file:
@@ -57,8 +61,8 @@ def write_bytes_atomically(path: Path, content: bytes) -> None:
 
 
 def write_text_atomically(path: Path, text: str) -> None:
-    """As `write_bytes_atomically`, for text in UTF-8."""
-    write_bytes_atomically(path, text.encode("utf-8"))
+    """As `write_bytes_atomically`, for text in UTF-8; a byte of a file's name that is none becomes its code."""
+    write_bytes_atomically(path, text.encode("utf-8", "backslashreplace"))
 
 
 def write_table(path: Path, columns: Mapping[str, ArrayLike]) -> None:

@@ -50,7 +50,8 @@ def print_diagnosis(diagnosis: Diagnosis, console: Console) -> None:
         _empirical(diagnosis),
         _notes(diagnosis),
     )
-    console.print(Group(*(part for part in parts if part is not None)))
+    # A name that its owner chose may look like markup.
+    console.print(Group(*(part for part in parts if part is not None)), markup=False)
 
 
 def _verdict(diagnosis: Diagnosis) -> Panel:

@@ -13,7 +13,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from sms.errors import InputError, nearest
-from sms.io.schema import Table, parse_toml
+from sms.io.schema import Table, decoded, parse_toml
 from sms.io.units import to_si
 
 Model = TypeVar("Model", bound=Table)
@@ -33,15 +33,7 @@ _EXPECTED = {
 
 def read_toml(path: Path, what: str) -> dict[str, Any]:
     """The tables of a TOML file; InputError when it is missing, empty or not TOML."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise InputError(f"{path}: there is no such {what} file; check the path") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file in UTF-8; a {what} is TOML text") from None
-    except OSError as problem:
-        raise InputError(f"{path}: cannot be read ({problem.strerror})") from None
-    tables = parse_toml(text, path)
+    tables = parse_toml(decoded(path, what, f"{what} file"), path)
     if not tables:
         raise InputError(f"{path}: the {what} file is empty; docs/simulation.md shows one")
     return tables

@@ -28,19 +28,10 @@ from sms.estimation.run import Run
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.io.signals import is_pressure, label, without_leg
+from sms.io.unit_slips import rates_nearby, stretched_remedy
 
 SCREENED = 12
 """Windows in which every slip is tried before the likeliest is tried in all. Run time."""
-RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.0, 2.0, 2.5, 4.0, 5.0, 8.0)]
-"""Hz, that most loggers have."""
-OTHER_RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.2, 1.25, 1.5, 1.6, 2.4, 3.0, 6.0, 7.5)]
-OTHER_RATES += [2.0**k for k in range(1, 11)]
-"""Hz, that some have."""
-STRETCHED = 1.3
-"""By how much an axis of time may be stretched, or squeezed: more is another unit (io/unit_slips.py)."""
-ROUNDED = 2e-3
-"""Of a rate: what it may be off by. Stamps are rounded to a millisecond or a part of it; quartz is better."""
-
 FOLLOWED = 0.05
 """Of a position's variance within a window: what a model of the same machine leaves at most. Judgement, from data of
 another simulator: 0.04 at the most with an effect, 0.1 to 0.5 with the bores of smaller cylinders. It
@@ -239,17 +230,13 @@ def _exchanged(signals: list[str]) -> Iterator[Slip]:
 def _stretched(rig: Rig, run: Run) -> Iterator[Slip]:
     """A clock that runs fast or slow, where the record has a rate that no logger has."""
     rate = 1.0 / run.step
-    if any(abs(rate - usual) <= ROUNDED * usual for usual in RATES + OTHER_RATES):
-        return
-    for usual in RATES:
-        if 1.0 / STRETCHED < usual / rate < STRETCHED:
-            factor = rate / usual
-            yield Slip(
-                "time",
-                f"a sample in {1e3 * run.step:.4g} ms is no logger's rate, and time looks "
-                f"{'stretched' if factor < 1.0 else 'squeezed'}, from {usual:g} Hz",
-                f"check the clock; if it is that, write scale = {rig.signals['time'].scale * factor:.6g} in [signals] "
-                "time",
-                lambda r, factor=factor: replace(r, time=r.time * factor),  # type: ignore[misc]
-                LEAST_SHARE,
-            )
+    for usual in rates_nearby(rate):
+        factor = rate / usual
+        yield Slip(
+            "time",
+            f"a sample in {1e3 * run.step:.4g} ms is no logger's rate, and time looks "
+            f"{'stretched' if factor < 1.0 else 'squeezed'}, from {usual:g} Hz",
+            stretched_remedy(rig, factor),
+            lambda r, factor=factor: replace(r, time=r.time * factor),  # type: ignore[misc]
+            LEAST_SHARE,
+        )

@@ -30,10 +30,12 @@ from sms.estimation.noise import noise_of
 from sms.estimation.nuisance import nuisance_at, project
 from sms.estimation.run import Run, make_run
 from sms.estimation.windows import Runs
+from sms.io.check import check_record, raise_if_unreadable
 from sms.io.records import load_record
 from sms.io.rig import DataLayout, Rig, load_rig
 from sms.io.signal_sources import SignalSource
 from sms.io.signals import SIGNALS, of_legs, without_leg
+from sms.io.thinning import thinned
 from sms.parameters import common_parameter
 from sms.rigs.kinds import KINDS, kind_of
 from sms.units_display import display_unit, significant
@@ -98,7 +100,11 @@ def detection_limits(rig: Rig | str | Path, progress: Progress = lambda text, do
             f"what has: {', '.join(KINDS)}"
         )
     kind = kind_of(rig)
-    records = [make_run(rig, load_record(rig, source)) for source in rig.records]
+    records = []
+    for source in rig.records:
+        record = thinned(load_record(rig, source))
+        raise_if_unreadable(record, check_record(rig, record))
+        records.append(make_run(rig, record))
     noise = noise_of(rig, kind, records)
     channels = tuple(
         s

@@ -161,6 +161,8 @@ def feed(
     """The equations of one record, and what the signals' noise makes of their errors."""
     count, samples = len(equations.units(runs.channels)), len(run.time)
     mean = _averaging(run)
+    # A reading that never changes shows no noise; it has what is declared of it.
+    noise = {s: size if size > 0.0 else runs.noise[s] for s, size in noise.items()}
     clean = {
         s: smoothed(run.signals[s], run.step, d)
         for s, d in equations.derivatives.items()

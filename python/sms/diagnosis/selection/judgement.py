@@ -97,7 +97,8 @@ def _by_windows(trial: Trial, before: Left, after: Left, weights: Array, tried: 
     )
     trial.gain_interval = interval(1.0 - now / np.maximum(was, 1e-12))
     lower = before.by_window - after.by_window
-    by_rank = tried * float(wilcoxon(lower, alternative="greater").pvalue)
+    better = float(wilcoxon(lower, alternative="greater").pvalue) if np.any(lower) else 1.0
+    by_rank = tried * better
     trial.p_value = min(1.0, 2.0 * min(by_rank, trial.p_value))
 
 
