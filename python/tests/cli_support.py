@@ -43,6 +43,19 @@ def sms(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         return subprocess.CompletedProcess(["sms", *arguments], code, out.read(), err.read())
 
 
+def sms_started(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """The same in a new interpreter, as a user starts it; and where the command starts processes of its own, which a
+    fork of a process that has some already cannot."""
+    return subprocess.run(
+        [sys.executable, "-m", "sms.cli", *arguments],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"COLUMNS": "100"},
+    )
+
+
 def _command(arguments: tuple[str, ...], cwd: Path, out: int, err: int) -> None:
     """The child: it never returns into the test."""
     code = ENDED_BY_ERROR

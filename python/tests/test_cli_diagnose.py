@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from cli_support import sms
+from cli_support import sms, sms_started
 from test_diagnosis_cylinder import make_rig
 
 
@@ -23,14 +21,7 @@ def refused(result: subprocess.CompletedProcess[str], *words: str) -> None:
 
 
 def test_the_command_as_a_user_starts_it(tmp_path: Path) -> None:
-    started = subprocess.run(
-        [sys.executable, "-m", "sms.cli", "diagnose", "missing.toml", "--out", "o"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | {"COLUMNS": "100"},
-    )
+    started = sms_started("diagnose", "missing.toml", "--out", "o", cwd=tmp_path)
     refused(started, "missing.toml", "there is no such rig file")
     again = sms("diagnose", "missing.toml", "--out", "o", cwd=tmp_path)
     assert (again.returncode, again.stdout, again.stderr) == (2, "", started.stderr)

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from cli_support import sms_started
 from sms.io import InputError
 from sms.report.sweep import sweep_html
 from sms.sweep import load_sweep, run_sweep
 from sms.sweep.run import PARTIAL, WHOLE, evaluate
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
-from test_cli_mechanism import run
 from test_scenario import DAMPED, FLOW_TEST, ROLL
 
 PLAN = """
@@ -169,8 +169,9 @@ def test_bad_plans(tmp_path: Path, old: str, new: str, said: tuple[str, ...]) ->
 
 def test_at_the_prompt(tmp_path: Path) -> None:
     plan(tmp_path, duration="0.5 s")
-    printed = run("sweep", "sweep.toml", "--out", "out", "--workers", "1", cwd=tmp_path).stdout
-    assert "6 variants" in printed and "depends most on" in printed
+    swept = sms_started("sweep", "sweep.toml", "--out", "out", "--workers", "1", cwd=tmp_path)
+    assert swept.returncode == 0, swept.stderr
+    assert "6 variants" in swept.stdout and "depends most on" in swept.stdout
     assert "Spearman" in (tmp_path / "out/sweep.html").read_text(encoding="utf-8")
     nobody = command("sweep", "sweep.toml", "--scheduler", "tcp://127.0.0.1:1", cwd=tmp_path)
     refused(nobody, "--scheduler tcp://127.0.0.1:1", "dask scheduler")

@@ -81,9 +81,10 @@ def test_a_smooth_error_has_its_size_and_is_smooth(rng: np.random.Generator) -> 
             function = draw_smooth(level, between, rng)
             assert rms_over(function, between) == pytest.approx(level, rel=1e-9)
             x = np.linspace(low, high, 2001)
-            slopes.append(np.gradient(function(x), x))
-        # A Gaussian process of this length has slopes of level / length.
-        assert np.sqrt(np.mean(np.square(slopes))) == pytest.approx(level / length, rel=0.4)
+            slopes.append(np.sqrt(np.mean(np.gradient(function(x), x) ** 2)))
+        # A Gaussian process of this length has slopes of level / length. One that happens to be small between the ends
+        # is scaled up with its slopes: hence the median.
+        assert np.median(slopes) == pytest.approx(level / length, rel=0.4)
 
 
 def test_every_edge_of_the_valve_is_off_by_its_own_error() -> None:
