@@ -14,27 +14,26 @@ namespace {
 
 // Absolute pressure in a chamber from its sensor's reading.
 template <typename S>
-S chamber_pressure(double reading, bool gauge, const S& gain, const S& offset, const S& ambient) {
-  const S truth = sensor_truth(S(reading), gain, offset);
+S chamber_pressure(double reading, bool gauge, const SensorErrors<S>& sensor, const S& ambient) {
+  const S truth = sensor.truth(S(reading));
   return gauge ? S(truth + ambient) : truth;
 }
 
 // The true state of the piston at one sample, from its readings.
 template <typename S>
 Piston<S> piston_at(const Params<S>& p, const CylinderRecord& record, Eigen::Index i) {
-  const S scale = S(1) / (S(1) + p.sensor_gain_extension);
+  const SensorErrors<S> sensor = extension_sensor(p);
   Piston<S> piston;
-  piston.extension = sensor_truth(S(record.extension[i]), p.sensor_gain_extension, p.sensor_offset_extension);
+  piston.extension = sensor.truth(S(record.extension[i]));
+  const S scale = S(1) / sensor.slope(piston.extension);
   piston.velocity = record.velocity[i] * scale;
   piston.acceleration = record.acceleration[i] * scale;
-  piston.pressure_lower =
-      chamber_pressure(record.pressure_lower[i], record.gauge_lower, p.sensor_gain_chamber_pressure_lower,
-                       p.sensor_offset_chamber_pressure_lower, p.ambient_pressure);
+  piston.pressure_lower = chamber_pressure(record.pressure_lower[i], record.gauge_lower,
+                                           chamber_pressure_lower_sensor(p), p.ambient_pressure);
   piston.pressure_upper = p.ambient_pressure;
   if (record.pressure_upper.size() > 0) {
-    piston.pressure_upper =
-        chamber_pressure(record.pressure_upper[i], record.gauge_upper, p.sensor_gain_chamber_pressure_upper,
-                         p.sensor_offset_chamber_pressure_upper, p.ambient_pressure);
+    piston.pressure_upper = chamber_pressure(record.pressure_upper[i], record.gauge_upper,
+                                             chamber_pressure_upper_sensor(p), p.ambient_pressure);
   }
   return piston;
 }
@@ -89,7 +88,7 @@ void residuals_of(const Params<S>& p, const CylinderRecord& record, FrictionLaw 
     }
     const S rod =
         pressure_force(p, piston) - friction_at(p, law, piston, deflection) - p.moving_mass * piston.acceleration;
-    out[i] = sensor_reading(rod, p.sensor_gain_rod_force, p.sensor_offset_rod_force) - record.rod_force[i];
+    out[i] = rod_force_sensor(p).reading(rod) - record.rod_force[i];
   }
 }
 

@@ -243,7 +243,8 @@ Jet<N> pow(const Jet<N>& f, const Jet<N>& g) {
   if (std::fpclassify(f.a) == FP_ZERO && g.a >= 1.0) {
     return g.a > 1.0 ? Jet<N>(0.0) : f;
   }
-  const double value = std::pow(f.a, g.a), slope = g.a * std::pow(f.a, g.a - 1.0);
+  const double value = std::pow(f.a, g.a);
+  const double slope = f.a > 0.0 ? g.a * (value / f.a) : g.a * std::pow(f.a, g.a - 1.0);
   if (f.a < 0.0 && g.a >= std::floor(g.a) && g.a <= std::floor(g.a)) {
     Jet<N> result = detail::chain(value, slope, f);
     for (int k = 0; k < N; ++k) {

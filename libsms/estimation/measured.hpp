@@ -35,8 +35,9 @@ Truth<S> truth_at(const MeasuredSignal& signal, int sample, double step, const S
   const auto read = [&place](const Eigen::VectorXd& values) {
     return values.size() > 0 ? detail::command_at<S>(values, place) : S(0);
   };
-  const S scale = S(1) + sensor.gain;
-  return {sensor.truth(read(signal.value)), read(signal.rate) / scale, read(signal.second) / scale};
+  const S truth = sensor.truth(read(signal.value));
+  const S slope = sensor.slope(truth);
+  return {truth, read(signal.rate) / slope, read(signal.second) / slope};
 }
 
 // The reservoir a sample later, as an equation of its own; it is the set point where there is no line (vessel.hpp).

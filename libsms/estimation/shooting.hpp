@@ -88,8 +88,8 @@ class WindowSimulation {
 // Samples of a window at least: one of fewer has nothing left to compare once its initial state is fitted.
 constexpr int kLeastOfWindow = 8;
 
-// Derivatives against parameters, four at a time: one AVX register.
-using ParameterJet = Jet<4>;
+// Derivatives against parameters, eight at a time: what they share, the model in plain numbers, is most of the work.
+using ParameterJet = Jet<8>;
 
 template <typename Plant>
 class ShootingProblem : public ProblemOf<typename Plant::template Machine<double>> {

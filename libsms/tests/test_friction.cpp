@@ -2,8 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <utility>
 
 #include "random_cases.hpp"
+#include "sms/force_balance.hpp"
 #include "sms/piston.hpp"
 #include "sms/sensor.hpp"
 
@@ -108,6 +110,44 @@ TEST_CASE("effects act as they say") {
   p.position_friction = 2.0;
   s.extension = 0.3;
   CHECK(sms::friction(p, s) == doctest::Approx(-38.0 * 1.2));
+}
+
+TEST_CASE("a friction curve that is off by so much at the speeds of its knots, by all laws, each direction its own") {
+  sms_test::Random random;
+  sms::Params<double> p;
+  p.friction_map_extend_1 = 0.1;
+  p.friction_map_extend_2 = -0.2;
+  p.friction_map_extend_3 = 0.3;
+  p.friction_map_retract_2 = 0.5;
+  for (const auto& [velocity, error] : {std::pair{0.006, 0.1},
+                                        {0.03, 0.1},
+                                        {0.075, -0.05},
+                                        {0.12, -0.2},
+                                        {0.3, 0.3},
+                                        {2.0, 0.3},
+                                        {-0.12, 0.5},
+                                        {-0.3, 0.0}}) {
+    CHECK(sms::friction_map(p, velocity) == doctest::Approx(1.0 + error));
+    for (int i = 0; i < 100; ++i) {
+      sms::Piston<double> s = random_piston(random);
+      s.velocity = velocity;
+      const sms::Params<double> exact;
+      CHECK(sms::friction(p, s) == doctest::Approx((1.0 + error) * sms::friction(exact, s)));
+      CHECK(sms::friction_two_branch(p, s) == doctest::Approx((1.0 + error) * sms::friction_two_branch(exact, s)));
+      const double drive = random.uniform(-300.0, 300.0);
+      for (const sms::FrictionLaw law :
+           {sms::FrictionLaw::acceleration_dependent, sms::FrictionLaw::two_branch, sms::FrictionLaw::stribeck}) {
+        const auto balance = sms::force_balance(p, law, s, 0.0, p.moving_mass, drive);
+        s.acceleration = balance.acceleration;
+        const double wanted = law == sms::FrictionLaw::acceleration_dependent ? sms::friction(p, s)
+                              : law == sms::FrictionLaw::two_branch           ? sms::friction_two_branch(p, s)
+                                                                              : sms::friction_stribeck(p, s.velocity);
+        if (std::abs(balance.acceleration) > 1e-9 && std::abs(velocity) >= p.stiction_velocity) {
+          CHECK(balance.friction == doctest::Approx(wanted).epsilon(1e-9));
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("force balance: single acting, at rest, and Newton's second law") {

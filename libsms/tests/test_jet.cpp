@@ -1,4 +1,5 @@
-// Numbers with derivatives against ceres::Jet, whose operations are the same to the last bit.
+// Numbers with derivatives against ceres::Jet, whose operations are the same to the last bit, but for pow: its derivative
+// costs no second power here.
 #include <ceres/jet.h>
 #include <doctest/doctest.h>
 
@@ -42,11 +43,26 @@ bool same(const Jet& ours, const Reference& theirs) {
   return all;
 }
 
+bool close(const Jet& ours, const Reference& theirs) {
+  bool all = same_number(ours.a, theirs.a);
+  for (int k = 0; k < kWidth; ++k) {
+    const double size = std::abs(ours.v[k]) + std::abs(theirs.v[k]);
+    all = all && (same_number(ours.v[k], theirs.v[k]) || std::abs(ours.v[k] - theirs.v[k]) < 1e-13 * (1.0 + size));
+  }
+  return all;
+}
+
 // of_two(f, g), of_one(f) and of_plain(f, number) are called with either kind.
 template <typename Function>
 void check_two(const char* name, const Pair& f, const Pair& g, const Function& of_two) {
   INFO(name, " of ", f.ours.a, " and ", g.ours.a);
   CHECK(same(of_two(f.ours, g.ours), of_two(f.theirs, g.theirs)));
+}
+
+Pair negative(Pair pair) {
+  pair.ours = -pair.ours;
+  pair.theirs = -pair.theirs;
+  return pair;
 }
 
 template <typename Function>
@@ -91,8 +107,9 @@ TEST_CASE("functions with derivatives have the bits of ceres::Jet") {
     check_one("floor", any, [](const auto& a) { return floor(a); });
     check_one("ceil", any, [](const auto& a) { return ceil(a); });
     check_two("atan2", any, other, [](const auto& a, const auto& b) { return atan2(a, b); });
-    check_two("pow", above, other, [](const auto& a, const auto& b) { return pow(a, b); });
-    check_two("pow below zero", any, other, [](const auto& a, const auto& b) { return pow(a, floor(b) + 0.0 * b); });
+    CHECK(close(pow(above.ours, other.ours), pow(above.theirs, other.theirs)));
+    check_two("pow below zero", any.ours.a > 0.0 ? negative(any) : any, other,
+              [](const auto& a, const auto& b) { return pow(a, floor(b) + 0.0 * b); });
   }
   for (const double exponent : {0.5, 1.0, 2.0, -1.0}) {
     const Pair zero = [&] {

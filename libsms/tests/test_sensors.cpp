@@ -127,6 +127,28 @@ TEST_CASE("gain and zero: a reading has its truth back, about the datum of a the
   CHECK(thermocouple.reading(303.0) == doctest::Approx(304.0));
 }
 
+TEST_CASE("linearity: a reading has its truth back, and no straight line is nearer than the bow") {
+  sms_test::Random random;
+  for (int i = 0; i < sms_test::count; ++i) {
+    sms::Params<double> p;
+    p.sensor_gain_chamber_pressure_lower = random.uniform(-0.1, 0.1);
+    p.sensor_offset_chamber_pressure_lower = random.uniform(-1e4, 1e4);
+    p.sensor_linearity_chamber_pressure_lower = random.uniform(-0.02, 0.02);
+    const sms::SensorErrors<double> gauge = sms::chamber_pressure_lower_sensor(p);
+    const double truth = random.uniform(-0.05e6, 0.55e6);  // beyond its span as well
+    CHECK(std::abs(gauge.truth(gauge.reading(truth)) - truth) < 1e-12 * 1e6);
+    const double by = 10.0;
+    CHECK(gauge.slope(truth) ==
+          doctest::Approx((gauge.reading(truth + by) - gauge.reading(truth - by)) / (2.0 * by)).epsilon(1e-9));
+    const double size = p.sensor_linearity_chamber_pressure_lower * 5e5;
+    sms::SensorErrors<double> straight = gauge;
+    straight.linearity = 0.0;
+    for (const auto& [place, share] : {std::pair{0.0, -1.0}, {2.5e5, 1.0}, {5e5, -1.0}}) {
+      CHECK(gauge.reading(place) - straight.reading(place) == doctest::Approx(share * size));
+    }
+  }
+}
+
 TEST_CASE("a yielding mount: the sensor sees less by what the force bends it") {
   sms::Params<double> p;
   p.frame_compliance = 1e-6;

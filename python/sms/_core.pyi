@@ -846,6 +846,54 @@ class Params:
     def friction_lag(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def friction_map_extend_1(self) -> float:
+        """
+        relative error of the friction curve, extending at 0.03 m/s [1]; assumed, a few percent (section 7.3)
+        """
+    @friction_map_extend_1.setter
+    def friction_map_extend_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def friction_map_extend_2(self) -> float:
+        """
+        relative error of the friction curve, extending at 0.12 m/s [1]; assumed, a few percent (section 7.3)
+        """
+    @friction_map_extend_2.setter
+    def friction_map_extend_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def friction_map_extend_3(self) -> float:
+        """
+        relative error of the friction curve, extending at 0.3 m/s [1]; assumed, a few percent (section 7.3)
+        """
+    @friction_map_extend_3.setter
+    def friction_map_extend_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def friction_map_retract_1(self) -> float:
+        """
+        relative error of the friction curve, retracting at 0.03 m/s [1]; assumed, a few percent (section 7.3)
+        """
+    @friction_map_retract_1.setter
+    def friction_map_retract_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def friction_map_retract_2(self) -> float:
+        """
+        relative error of the friction curve, retracting at 0.12 m/s [1]; assumed, a few percent (section 7.3)
+        """
+    @friction_map_retract_2.setter
+    def friction_map_retract_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def friction_map_retract_3(self) -> float:
+        """
+        relative error of the friction curve, retracting at 0.3 m/s [1]; assumed, a few percent (section 7.3)
+        """
+    @friction_map_retract_3.setter
+    def friction_map_retract_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def gas_constant(self) -> float:
         """
         gas constant of (moist) air, R [J/(kg K)]; published, section 4.1.3.3.1 and ISO 6358
@@ -1604,6 +1652,78 @@ class Params:
         """
     @sensor_lag_tank_pressure.setter
     def sensor_lag_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_chamber_pressure_lower(self) -> float:
+        """
+        by how much the lower chamber pressure sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_chamber_pressure_lower.setter
+    def sensor_linearity_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_chamber_pressure_upper(self) -> float:
+        """
+        by how much the upper chamber pressure sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_chamber_pressure_upper.setter
+    def sensor_linearity_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_extension(self) -> float:
+        """
+        by how much the position sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_extension.setter
+    def sensor_linearity_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_pitch(self) -> float:
+        """
+        by how much the pitch sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_pitch.setter
+    def sensor_linearity_pitch(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_rod_force(self) -> float:
+        """
+        by how much the rod force sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_rod_force.setter
+    def sensor_linearity_rod_force(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_roll(self) -> float:
+        """
+        by how much the roll sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_roll.setter
+    def sensor_linearity_roll(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_supply_pressure(self) -> float:
+        """
+        by how much the supply pressure sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_supply_pressure.setter
+    def sensor_linearity_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_tank_pressure(self) -> float:
+        """
+        by how much the tank pressure sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_tank_pressure.setter
+    def sensor_linearity_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_linearity_tank_temperature(self) -> float:
+        """
+        by how much the tank temperature sensor's readings bow off their best straight line, of its span [1]; neutral
+        """
+    @sensor_linearity_tank_temperature.setter
+    def sensor_linearity_tank_temperature(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def sensor_offset_chamber_pressure_lower(self) -> float:

@@ -45,6 +45,15 @@ PARAMETERS: Mapping[str, Parameter] = _read_table()
 
 FLOW_MAP = tuple(name for name in PARAMETERS if name.startswith("flow_map_"))
 """Relative errors of the flow through the valve, at some openings."""
+FRICTION_MAP = tuple(name for name in PARAMETERS if name.startswith("friction_map_"))
+"""Relative errors of the friction curve, at some speeds."""
+MAPS = FLOW_MAP + FRICTION_MAP
+LINEARITY = tuple(
+    name
+    for name, row in PARAMETERS.items()
+    if name.startswith("sensor_linearity_") and row.uncertainty > 0.0
+)
+"""By how much sensors deviate from their best straight lines, of their spans."""
 
 
 # ---- machines with three legs ----------------------------------------------------------------------

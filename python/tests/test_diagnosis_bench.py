@@ -13,14 +13,14 @@ import pytest
 from numpy.typing import NDArray
 from plant_support import write_bench
 from sms import _core
-from sms.diagnosis import diagnose
+from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.effects.catalogue import Effect, catalogue
 from sms.diagnosis.localisation.signal_functions import hats
 from sms.diagnosis.localisation.unknown_inputs import confirmed
 from sms.diagnosis.selection.score_test import score_tests
 from sms.estimation.least_squares import Free, fit_windows
 from sms.estimation.nuisance import Nuisance, project
-from sms.parameters import FLOW_MAP
+from sms.parameters import FLOW_MAP, FRICTION_MAP, LINEARITY
 
 from validation.random_cases import draw
 from validation.twins.draw import draw as draw_machine
@@ -28,6 +28,10 @@ from validation.twins.draw import draw as draw_machine
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 Array = NDArray[np.float64]
 
+OF_BENCH = tuple(
+    f"sensor_linearity_{s}"
+    for s in ("extension", "chamber_pressure_lower", "chamber_pressure_upper")
+)
 IDS = (
     *("presliding", "valve_leakage", "piston_leakage", "fitting_leakage"),
     *("spool_lag", "command_delay", "dead_band_width", "valve_centre_offset"),
@@ -217,6 +221,27 @@ def test_a_flow_map_may_be_off_as_far_as_the_rig_file_says(tmp_path: Path) -> No
     wide = diagnose(path)
     assert wide.verdict == "no-evidence"
     assert {p.name for p in wide.baseline} >= set(FLOW_MAP[:5])  # a wider opening does not occur
+    assert all(g.baseline_rms < 1.3 * g.noise_floor for g in wide.gain)
+
+
+def test_friction_and_sensors_may_be_off_as_far_as_the_rig_file_says(tmp_path: Path) -> None:
+    off = {n: 0.12 * np.sin(1.7 * k + 1.0) for k, n in enumerate(FRICTION_MAP)}
+    off |= {n: 0.008 * (-1.0) ** k for k, n in enumerate(OF_BENCH)}
+    path = write_bench(tmp_path, 6, off)
+    text = path.read_text()
+
+    def with_half_widths(friction: str, line: str) -> Diagnosis:
+        path.write_text(
+            f'{text}\n[model]\nfriction_map_uncertainty = "{friction}"\nsensor_linearity = "{line}"\n'
+        )
+        return diagnose(path)
+
+    exact = with_half_widths("0 %", "0 %")
+    assert exact.verdict != "no-evidence"
+    assert not {*FRICTION_MAP, *LINEARITY} & {p.name for p in exact.baseline}
+    wide = with_half_widths("12 %", "1 %")
+    assert wide.verdict == "no-evidence"
+    assert {p.name for p in wide.baseline} >= {*FRICTION_MAP, *OF_BENCH}
     assert all(g.baseline_rms < 1.3 * g.noise_floor for g in wide.gain)
 
 

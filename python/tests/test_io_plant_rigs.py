@@ -15,7 +15,7 @@ from sms.io.check import check_record
 from sms.io.records import Record, load_record
 from sms.io.rig import Declaration
 from sms.io.signals import KINDS, SIGNAL_UNITS, of_legs, without_leg
-from sms.parameters import FLOW_MAP, PARAMETERS
+from sms.parameters import FLOW_MAP, FRICTION_MAP, LINEARITY, PARAMETERS
 
 Array = NDArray[np.float64]
 
@@ -109,13 +109,25 @@ def test_a_mistake_is_named(tmp_path: Path, wrong: str, right: str, sentence: st
         load_rig(bench(tmp_path, BENCH.replace(wrong, right)))
 
 
-def test_the_half_width_of_the_flow_map_is_that_of_all_its_parameters(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("key", "names"), [
+    ("flow_map_uncertainty", FLOW_MAP),
+    ("friction_map_uncertainty", FRICTION_MAP),
+    ("sensor_linearity", LINEARITY),
+])  # fmt: skip
+def test_a_half_width_in_model_is_that_of_all_its_parameters(
+    tmp_path: Path, key: str, names: tuple[str, ...]
+) -> None:
     def declared(text: str) -> set[float]:
-        return {load_rig(bench(tmp_path, text)).declared(n).uncertainty for n in FLOW_MAP}
+        return {load_rig(bench(tmp_path, text)).declared(n).uncertainty for n in names}
 
-    assert declared(BENCH) == {PARAMETERS[FLOW_MAP[0]].uncertainty}
+    assert declared(BENCH) == {PARAMETERS[names[0]].uncertainty}
+    assert list(declared(BENCH.replace("[model]", f'[model]\n{key} = "1.5 %"'))) == pytest.approx(
+        [0.015]
+    )
+
+
+def test_one_parameter_of_a_map_has_a_half_width_of_its_own(tmp_path: Path) -> None:
     with_map = BENCH.replace("[model]", '[model]\nflow_map_uncertainty = "7 %"')
-    assert list(declared(with_map)) == pytest.approx([0.07])
     one = with_map + "\n[parameters]\nflow_map_feed_2 = { value = 0.1, uncertainty = 0.01 }\n"
     assert load_rig(bench(tmp_path, one)).declared("flow_map_feed_2") == Declaration(0.1, 0.01)
     assert load_rig(bench(tmp_path, one)).declared("flow_map_feed_3").uncertainty == pytest.approx(
@@ -124,7 +136,7 @@ def test_the_half_width_of_the_flow_map_is_that_of_all_its_parameters(tmp_path: 
 
 
 @pytest.mark.parametrize(("said", "sentence"), [
-    ('"-3 %"', "-3 % is no half width of a known flow; write 0 to 100 %"),
+    ('"-3 %"', "-3 % is no half width; write 0 to 100 %"),
     ('"200 %"', "200 % is no half width"),
     ('"3 mm"', "the unit 'mm' does not fit"),
 ])  # fmt: skip
@@ -133,8 +145,11 @@ def test_a_half_width_that_is_none_is_refused(tmp_path: Path, said: str, sentenc
     with pytest.raises(InputError, match=re.escape(f"[model] flow_map_uncertainty: {sentence}")):
         load_rig(bench(tmp_path, text))
     cylinder = '[rig]\nkind = "cylinder"\n[model]\nflow_map_uncertainty = "3 %"\n'
-    with pytest.raises(InputError, match="no flow of a cylinder is computed"):
+    with pytest.raises(InputError, match="nothing of a cylinder depends on it"):
         load_rig(bench(tmp_path, cylinder + '[[records]]\nfile = "one.csv"\nrole = "identify"\n'))
+    wide = BENCH.replace("[model]", '[model]\nsensor_linearity = "3 %"')
+    with pytest.raises(InputError, match="3 % is no half width; write 0 to 2 %"):
+        load_rig(bench(tmp_path, wide))
 
 
 def test_signals_of_the_legs_have_units() -> None:

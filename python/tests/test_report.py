@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import base64
+import hashlib
 import io
 import json
 import re
+import shutil
+import subprocess
 from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +26,7 @@ from sms.report.diagnosis import report_html
 from sms.report.verdict import VERDICT_WORDS
 
 LARGEST_PAGE = 8.5e6  # bytes
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 # ---- reading the page back ----------------------------------------------------------------------
@@ -179,6 +184,38 @@ def test_text_cannot_become_markup() -> None:
     page = Page(report_html(d))
     assert sum(tag == "script" for tag, _ in page.tags) == 3
     assert evil in page.text
+
+
+def test_a_page_runs_its_own_scripts_and_no_other() -> None:
+    page = Page(report_html(diagnosis("combination")))
+    (policy,) = [
+        a["content"] or ""
+        for tag, a in page.tags
+        if tag == "meta" and a.get("http-equiv") == "Content-Security-Policy"
+    ]
+    allowed = policy.partition("script-src ")[2].partition(";")[0].split()
+    digests = [hashlib.sha256(s.encode()).digest() for s in page.scripts if not s.startswith("{")]
+    assert allowed == [f"'sha256-{base64.b64encode(d).decode()}'" for d in digests]
+    without = Page(report_html(replace(diagnosis("combination"), series=())))
+    assert not without.scripts
+    assert any("script-src 'none'" in (a.get("content") or "") for _, a in without.tags)
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here; apt-get install chromium")
+def test_a_browser_draws_the_page_and_refuses_a_script_that_was_smuggled_in(tmp_path: Path) -> None:
+    smuggled = "<script>document.title = 'it ran'</script><img src=x onerror=\"document.title = 'it ran'\">"
+    html = report_html(diagnosis("combination"))
+    file = tmp_path / "report.html"
+    file.write_text(html.replace("<main>", f"<main>{smuggled}"), encoding="utf-8")
+    assert CHROMIUM is not None
+    flags = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=8000"]
+    flags += [f"--user-data-dir={tmp_path}/profile", "--dump-dom"]
+    done = subprocess.run(
+        [CHROMIUM, *flags, file.as_uri()], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert "it ran" in done.stdout  # the text of the script is there
+    assert "<title>it ran" not in done.stdout
+    assert 'class="main-svg"' in done.stdout  # and the page's own have drawn
 
 
 # ---- the curves ---------------------------------------------------------------------------------

@@ -64,7 +64,7 @@ template <typename S>
 FrictionBranches<S> friction_branches(const Params<S>& p, const Piston<S>& piston) {
   using std::abs;
   const S& v = piston.velocity;
-  const S ramp = friction_ramp(p, v);
+  const S ramp = friction_map(p, v) * friction_ramp(p, v);
   const S factor = excess_factor(p, piston);
   const S starting =
       ramp * seal_force(p, piston, p.coulomb_force) + abs(ramp) * (p.viscous_friction * v + p.direction_friction);
@@ -169,7 +169,8 @@ ForceBalance<S> force_balance(const Params<S>& p, FrictionLaw law, const Piston<
     }
     case FrictionLaw::stribeck: {
       const S dry = stribeck_force(p, piston.velocity);
-      const S force = p.viscous_friction * piston.velocity + friction_ramp(piston.velocity, p.stiction_velocity) * dry;
+      const S ramp = friction_ramp(piston.velocity, p.stiction_velocity);
+      const S force = friction_map(p, piston.velocity) * (p.viscous_friction * piston.velocity + ramp * dry);
       return {(drive - force) / mass, force, S(0), S(0)};
     }
     case FrictionLaw::dahl:

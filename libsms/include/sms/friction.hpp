@@ -22,6 +22,9 @@
 // Limits: at a = 0 the Stribeck velocity |a| zeta v_S is zero and so is the term; at v = 0 the force is zero with slope
 // (pi / (2 eps)) [F_C2], which the sine carries exactly, derivatives included.
 //
+// No curve is exact. friction_map_extend_1.. and friction_map_retract_1.. are the relative error of friction at some
+// speeds of either direction, linear in between and constant beyond; zero leaves every result unchanged.
+//
 // Three effects, absent until data switches them on (their parameters are zero):
 //   pressure_dependent_friction   the lips are pressed on the bore by the chamber pressures: Coulomb friction grows, and
 //                                 what static friction is more than that (pressure_stiction)
@@ -32,7 +35,9 @@
 #include <cmath>
 
 #include "sms/effect.hpp"
+#include "sms/limit.hpp"
 #include "sms/params.hpp"
+#include "sms/scalar.hpp"
 
 namespace sms {
 
@@ -77,6 +82,25 @@ S friction_ramp(const Params<S>& p, const S& velocity) {
     ramp += p.stiction_shape * (tangent - ramp);
   }
   return ramp;
+}
+
+// 1 and the curve's relative error at this velocity.
+template <typename S>
+S friction_map(const Params<S>& p, const S& velocity) {
+  using P = Params<S>;
+  using V = ValueOf<S>;
+  constexpr int knots = 3;
+  constexpr V at[knots] = {V(0.03), V(0.12), V(0.3)};  // m/s
+  static constexpr S P::*extend[] = {&P::friction_map_extend_1, &P::friction_map_extend_2, &P::friction_map_extend_3};
+  static constexpr S P::*retract[] = {&P::friction_map_retract_1, &P::friction_map_retract_2,
+                                      &P::friction_map_retract_3};
+  const bool extends = velocity > S(0);
+  const auto& error = extends ? extend : retract;
+  const S speed = extends ? velocity : S(-velocity);
+  const int above = speed > S(at[1]) ? 2 : 1;
+  const S share = limited<S>((speed - S(at[above - 1])) / S(at[above] - at[above - 1]), S(0), S(1));
+  const S& below = p.*error[above - 1];
+  return S(1) + below + share * (p.*error[above] - below);
 }
 
 // |v / width|^delta, held at 1000 from a million widths on: with delta >= 0.5 (its bound) it is no less there, and exp
@@ -144,7 +168,7 @@ S friction_of_width(const Params<S>& p, const Piston<S>& piston, const S& width)
   using std::abs;
   const S& v = piston.velocity;
   const S& a = piston.acceleration;
-  const S ramp = friction_ramp(p, v);
+  const S ramp = friction_map(p, v) * friction_ramp(p, v);
   const bool speeding_up = (v > S(0) && a > S(0)) || (v < S(0) && a < S(0));
 
   S coulomb = p.coulomb_force;
@@ -187,7 +211,7 @@ template <typename S>
 S friction_stribeck(const Params<S>& p, const S& velocity) {
   const S dry = stribeck_force(p, velocity);
   const S sign = velocity > S(0) ? S(1) : (velocity < S(0) ? S(-1) : S(0));
-  return p.viscous_friction * velocity + sign * dry;
+  return friction_map(p, velocity) * (p.viscous_friction * velocity + sign * dry);
 }
 
 }  // namespace sms

@@ -39,7 +39,7 @@ template <typename S>
 S bristle_strength(const Params<S>& p, const Piston<S>& piston, const S& dry) {
   const S& v = piston.velocity;
   const S direction = v > S(0) ? p.direction_friction : (v < S(0) ? -p.direction_friction : S(0));
-  const S strength = seal_force(p, piston, dry) + direction;
+  const S strength = friction_map(p, v) * (seal_force(p, piston, dry) + direction);
   return strength > S(1e-3) ? strength : S(1e-3);
 }
 
@@ -79,7 +79,8 @@ BristleFriction<S> lugre_friction(const Params<S>& p, const Piston<S>& piston, c
   const S strength = bristle_strength(p, piston, dry);
   const S largest = strength / p.bristle_stiffness;
   const S rate = v - sliding_part(p, v, deflection, largest) * abs(v) * (deflection / largest);
-  return {p.bristle_stiffness * deflection + p.bristle_damping * rate + p.viscous_friction * v, rate};
+  return {p.bristle_stiffness * deflection + p.bristle_damping * rate + friction_map(p, v) * (p.viscous_friction * v),
+          rate};
 }
 
 template <typename S>

@@ -1,9 +1,16 @@
 // What a sensor says, against what is there. One chain for simulation, virtual rig and estimation:
 //
-//   truth -> mount, play -> lag of its filter -> gain, zero -> noise -> range -> rounding -> clock of its logger
+//   truth -> mount, play -> lag of its filter -> gain, zero, linearity -> noise -> range -> rounding -> clock of its logger
 //
 // Gain and zero: reading = datum + (1 + gain) (truth - datum) + offset. The datum is zero but for a thermocouple, which
 // measures against its cold junction. The model computes with truths; a record holds readings.
+//
+// Linearity. What a data sheet calls so is how far a sensor is off its best straight line; the simplest way to be off is
+// a bow over its span, the second Chebyshev polynomial,
+//
+//   linearity (to - from) (1 - 2 u^2),   u = (2 truth - from - to) / (to - from)
+//
+// of all parabolas the one that no line fits better. With it a truth is the root of a quadratic.
 //
 // Lag. A sensor follows by a first-order lag, x' = (truth - x) / lag, stepped exactly for a truth that runs straight from
 // one look to the next. Where the lag is shorter than such a step the sensor is read as it was that long ago, to first
@@ -48,25 +55,60 @@ struct SensorErrors {
   S lag;           // s, of its filter
   S clock;         // s, of its logger
   S datum;         // in the signal's unit
+  S linearity{0};  // of its span
+  S from{0}, to{1};
 
   S reading(const S& truth) const {
-    return has_datum() ? S(datum + sensor_reading<S>(truth - datum, gain, offset))
-                       : sensor_reading(truth, gain, offset);
+    const S straight =
+        has_datum() ? S(datum + sensor_reading<S>(truth - datum, gain, offset)) : sensor_reading(truth, gain, offset);
+    if (is_absent(linearity)) {
+      return straight;
+    }
+    const S u = place(truth);
+    return straight + linearity * (to - from) * (S(1) - S(2) * u * u);
   }
+
   S truth(const S& reading) const {
-    return has_datum() ? S(datum + sensor_truth<S>(reading - datum, gain, offset))
-                       : sensor_truth(reading, gain, offset);
+    const S straight =
+        has_datum() ? S(datum + sensor_truth<S>(reading - datum, gain, offset)) : sensor_truth(reading, gain, offset);
+    return is_absent(linearity) ? straight : bowed_truth(straight);
+  }
+
+  // By how much the reading rises with the truth.
+  S slope(const S& truth) const {
+    return is_absent(linearity) ? S(S(1) + gain) : S(S(1) + gain - S(8) * linearity * place(truth));
   }
 
  private:
   bool has_datum() const { return value_of(datum) > ValueOf<S>(0); }
+
+  // From -1 to 1 over the span.
+  S place(const S& truth) const { return (S(2) * truth - from - to) / (to - from); }
+
+  // The root u of  u + bow (1 - 2 u^2) = w  at the straight line's w, in units of half the span.
+  S bowed_truth(const S& straight) const {
+    using std::sqrt;
+    const S bow = S(2) * linearity / (S(1) + gain);
+    const S above = place(straight) - bow;
+    const S square = S(1) - S(8) * bow * above;
+    const S root = sqrt(square > S(0.25) ? square : S(0.25));  // less is far outside of the span
+    return S(0.5) * (from + to) + (to - from) * above / (S(1) + root);
+  }
 };
 
 // extension_sensor(p), supply_pressure_sensor(p), ...
-#define SMS_SENSOR(name, unit, zero, zero_known, gain_known, label, value, rate, lag, clock, datum, ...) \
-  template <typename S>                                                                                  \
-  SensorErrors<S> name##_sensor(const Params<S>& p) {                                                    \
-    return {p.sensor_gain_##name, p.sensor_offset_##name, S(lag), S(clock), S(datum)};                   \
+#define SMS_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate, lag, clock, datum, from, \
+                   to, ...)                                                                                           \
+  template <typename S>                                                                                               \
+  SensorErrors<S> name##_sensor(const Params<S>& p) {                                                                 \
+    return {p.sensor_gain_##name,                                                                                     \
+            p.sensor_offset_##name,                                                                                   \
+            S(lag),                                                                                                   \
+            S(clock),                                                                                                 \
+            S(datum),                                                                                                 \
+            p.sensor_linearity_##name,                                                                                \
+            S(from),                                                                                                  \
+            S(to)};                                                                                                   \
   }
 #include "sms/signals.def"
 

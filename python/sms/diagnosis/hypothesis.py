@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +21,11 @@ from sms.estimation.least_squares import MOST_STEPS, Free, Solution, WindowFit, 
 from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
-from sms.parameters import FLOW_MAP, PARAMETERS, Parameter
+from sms.parameters import MAPS, PARAMETERS, Parameter
 
 SENSORS = tuple(n for n, p in PARAMETERS.items() if n.startswith("sensor_") and p.uncertainty > 0.0)
-"""Zero and gain of pressure sensors, which are calibrated to so much."""
-ALWAYS_UNCERTAIN = ("stiction_shape", *FLOW_MAP, *SENSORS)
+"""Zero and gain of pressure sensors, which are calibrated to so much, and the linearity of all."""
+ALWAYS_UNCERTAIN = ("stiction_shape", *MAPS, *SENSORS)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
 TURNS, SETTLED = 2, 0.2
 """Of parameters and discrepancy, each for the other; and the change of the logarithm of tau that ends it. Run time."""
@@ -60,8 +61,8 @@ class Hypothesis:
 
     @property
     def with_exact_maps(self) -> Hypothesis:
-        """The valve's tables taken as they are."""
-        free = {n: bounds for n, bounds in self.free.items() if n not in FLOW_MAP}
+        """The valve's tables and the friction curve taken as they are."""
+        free = {n: bounds for n, bounds in self.free.items() if n not in MAPS}
         return replace(self, free=free, known={n: u for n, u in self.known.items() if n in free})
 
     def with_effect(
@@ -191,7 +192,7 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
             free[name] = (bounds.lower, bounds.upper)
         elif declared.uncertainty > 0.0:
             uncertain[name] = declared.uncertainty
-            room = declared.uncertainty * (WIDE if name in FLOW_MAP else 1.0)
+            room = declared.uncertainty * (WIDE if name in MAPS else 1.0)
             free[name] = (
                 max(bounds.lower, declared.value - room),
                 min(bounds.upper, declared.value + room),
@@ -307,6 +308,22 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     return np.asarray(noise * bread * np.outer(inflate, inflate))
 
 
+def lean(fitted: Fitted) -> Fitted:
+    """The same model, its sensitivities in single precision: a round of the search holds dozens of such models."""
+    if not isinstance(fitted.fit, WindowFit):
+        return fitted
+    slopes: Any = fitted.fit.jacobian.astype(np.float32)
+    return replace(fitted, fit=replace(fitted.fit, jacobian=slopes))
+
+
+def without_sensitivities(fitted: Fitted) -> Fitted:
+    """The same model for whoever asks for its values."""
+    if not isinstance(fitted.fit, WindowFit):
+        return fitted
+    none = np.empty((0, len(fitted.hypothesis.free)))
+    return replace(fitted, fit=replace(fitted.fit, jacobian=none), columns={})
+
+
 def residual_of(runs: Runs, params: _core.Params) -> Array:
     residual, _ = runs.problem.evaluate(params)
     return np.asarray(residual)
@@ -325,7 +342,7 @@ def refitted(fitted: Fitted, data: Data) -> Fitted:
         before = next((at for _, at in data.refitted_of.values()), None)
         data.refitted_of[id(fitted)] = (
             fitted,
-            refitted_on(fitted, data.validate, before, data.allowed(data.validate)),
+            lean(refitted_on(fitted, data.validate, before, data.allowed(data.validate))),
         )
     return data.refitted_of[id(fitted)][1]
 
@@ -386,10 +403,10 @@ def nuisance_of(fitted: Fitted, white: bool = False) -> Nuisance:
     """The free parameters that are not held by a bound, at the solution; their sensitivities whitened if asked for."""
     h = fitted.hypothesis
     movable = fitted.movable
-    place = [list(h.free).index(n) for n in movable]
+    slopes = fitted.fit.jacobian[:, [list(h.free).index(n) for n in movable]].astype(np.float64)
     return Nuisance(
         movable,
-        fitted.whiten(fitted.fit.jacobian[:, place]) if white else fitted.fit.jacobian[:, place],
+        fitted.whiten(slopes) if white else slopes,
         weights_of(h, movable),
         np.array([fitted.params[n] - h.start[n] for n in movable]),
     )

@@ -81,7 +81,7 @@ from sms.diagnosis.wording_simulated import (
 from sms.errors import InputError
 from sms.io.records import Record
 from sms.io.rig import Rig
-from sms.parameters import FLOW_MAP
+from sms.parameters import MAPS
 from sms.rigs.kinds import KINDS
 
 
@@ -330,8 +330,8 @@ def _hidden(fitted: Fitted, data: Data, excess: LackOfFit, rng: np.random.Genera
     rows = len(runs.channel) / len(runs.channels)
     chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
     free = nuisance_of(fitted)
-    for name in (
-        FLOW_MAP
-    ):  # what is missing is looked for beside the tables, not in what they may be off by
+    for (
+        name
+    ) in MAPS:  # what is missing is looked for beside the maps, not in what they may be off by
         free = free.without(name)
     return estimate_unknown_inputs(runs, free, fitted.fit.residual, fitted.params, chi_square, rng)

@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from sms.arrays import Array, Index
 
@@ -35,9 +36,9 @@ def project_off(columns: Array, nuisance: Array) -> Array:
 
 def sum_by(group: Index, values: Array, groups: int) -> Array:
     """Sums of values (n,) or (n, m) over groups: (groups,) or (groups, m)."""
-    out = np.zeros((groups, *values.shape[1:]))
-    np.add.at(out, group, values)
-    return out
+    rows = len(group)
+    member = csr_array((np.ones(rows), group, np.arange(rows + 1)), shape=(rows, groups))
+    return np.asarray(member.T @ values)
 
 
 @dataclass(frozen=True)

@@ -112,14 +112,18 @@ def fit_windows(
     def cost(residual: Array, value: Array) -> float:
         return float(residual @ residual + np.sum((pull @ (value - centre)) ** 2))
 
+    def slopes_at(value: Array) -> tuple[Array, Array]:
+        residual, jacobian = problem.evaluate(at(value), names)
+        return residual, jacobian * scale
+
     exact = slopes is None
-    residual, jacobian = problem.evaluate(at(value), names if exact else ())
-    jacobian = jacobian if slopes is None else slopes
+    residual, slope = (
+        slopes_at(value) if slopes is None else (problem.evaluate(at(value), ())[0], slopes * scale)
+    )
     worked_out, converged = int(exact), not free
     for _ in range(SECANTS * most_steps if free else 0):
         here = cost(residual, value)
-        little = ENOUGH + _worthless(residual, jacobian)
-        slope = jacobian * scale
+        little = ENOUGH + _worthless(residual, slope)
         step = _linear_step(slope, residual, pull, value - centre, lower - value, upper - value)
         promised = here - cost(residual + slope @ step, value + step)
         gained, length, tried = 0.0, 1.0, value
@@ -136,30 +140,28 @@ def fit_windows(
         if exact and gained < little:
             converged = True
             if gained > 0.0:
-                residual, jacobian = problem.evaluate(at(value), names)
+                residual, slope = slopes_at(value)
             break
         if gained >= max(little, AS_PROMISED * promised):
             missed = (after - residual - slope @ moved) / max(float(moved @ moved), 1e-300)
-            residual, jacobian, exact = after, jacobian + np.outer(missed, moved / scale), False
+            slope += np.outer(missed, moved)
+            residual, exact = after, False
         elif worked_out < most_steps:
-            residual, jacobian = problem.evaluate(at(value), names)
+            residual, slope = slopes_at(value)
             exact, worked_out = True, worked_out + 1
         else:
             residual = after if gained > 0.0 else residual
             break
     if not exact and worked_out < most_steps:
-        residual, jacobian = problem.evaluate(at(value), names)
+        residual, slope = slopes_at(value)
     margin = 1e-6
-    held = [
-        bool(v <= a + margin or v >= b - margin)
-        for v, a, b in zip(value, lower, upper, strict=True)
-    ]
-    return WindowFit(at(value), np.asarray(residual), np.asarray(jacobian), held, converged)
+    held = ((value <= lower + margin) | (value >= upper - margin)).tolist()
+    return WindowFit(at(value), np.asarray(residual), np.asarray(slope / scale), held, converged)
 
 
 def _worthless(residual: Array, jacobian: Array) -> float:
     """Of chi-square, what is next to nothing for a model that leaves so much where it has a slope at all."""
-    felt = residual[np.any(jacobian != 0.0, axis=1)]
+    felt = residual[np.any(jacobian, axis=1)]
     if not felt.size:
         return 0.0
     left = float(felt @ felt)
@@ -179,12 +181,10 @@ def _linear_step(
 ) -> Array:
     """The step that minimises the linearised cost with low <= step <= high."""
     k = jacobian.shape[1]
-    stacked = np.column_stack([jacobian, residual])
-    gram = stacked.T @ stacked
-    gram[:k, :k] += pull.T @ pull
-    gram[:k, k] += pull.T @ (pull @ off)
-    gram[k, :k] = gram[:k, k]
-    gram[k, k] += float(np.sum((pull @ off) ** 2))
+    gram = np.empty((k + 1, k + 1))
+    gram[:k, :k] = jacobian.T @ jacobian + pull.T @ pull
+    gram[:k, k] = gram[k, :k] = jacobian.T @ residual + pull.T @ (pull @ off)
+    gram[k, k] = float(residual @ residual + np.sum((pull @ off) ** 2))
     r = _triangular(gram)
     damped = np.vstack([r[:k, :k], 1e-6 * np.diag(np.linalg.norm(r[:k, :k], axis=0) + 1e-12)])
     target = np.concatenate([-r[:k, k], np.zeros(k)])

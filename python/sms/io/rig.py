@@ -34,7 +34,15 @@ from sms.io.signals import (
     without_leg,
 )
 from sms.io.units import interval_to_si, to_si
-from sms.parameters import FLOW_MAP, LEG_PARAMETERS, PARAMETERS, Parameter, is_of_leg
+from sms.parameters import (
+    FLOW_MAP,
+    FRICTION_MAP,
+    LEG_PARAMETERS,
+    LINEARITY,
+    PARAMETERS,
+    Parameter,
+    is_of_leg,
+)
 
 Role = Literal["identify", "validate", "test", "reference"]
 
@@ -160,7 +168,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
         skip_first=data.skip_first,
         speed_above=speed_above,
         signals=sources_of(file, controls, path),
-        parameters=_flow_map(file, path)
+        parameters=_of_model(file, path)
         | {
             name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(file.rig.kind))
             for name, table in file.parameters.items()
@@ -245,20 +253,29 @@ def _declaration(
     return Declaration(value, uncertainty, table.fit)
 
 
-def _flow_map(file: RigFile, path: Path) -> dict[str, Declaration]:
-    """The error of the valve's flow at each opening, where [model] says how large it may be."""
-    said = file.model.flow_map_uncertainty
-    if said is None:
-        return {}
-    where = f"{path}, [model] flow_map_uncertainty"
-    if "valve_command" not in map(without_leg, KINDS[file.rig.kind].needed) or (
-        file.rig.kind == "spool_test"
-    ):
-        raise InputError(f"{where}: no flow of a {file.rig.kind} is computed; leave it out")
-    half_width = interval_to_si(said, "1", where)
-    if not 0.0 <= half_width < 1.0:
-        raise InputError(f"{where}: {said} is no half width of a known flow; write 0 to 100 %")
-    return {name: Declaration(PARAMETERS[name].default, half_width) for name in FLOW_MAP}
+def _of_model(file: RigFile, path: Path) -> dict[str, Declaration]:
+    """Errors of flow, friction and sensors' lines, where [model] says how large they are."""
+    kind, model = file.rig.kind, file.model
+    commanded = kind != "spool_test" and "valve_command" in map(without_leg, KINDS[kind].needed)
+    moves = kind in ("bench", "platform")
+    said = {
+        "flow_map_uncertainty": (FLOW_MAP, 1.0, commanded),
+        "friction_map_uncertainty": (FRICTION_MAP, 1.0, moves),
+        "sensor_linearity": (LINEARITY, 0.02, moves or kind == "tank"),
+    }
+    declared: dict[str, Declaration] = {}
+    for key, (names, most, asked) in said.items():
+        text = getattr(model, key)
+        if text is None:
+            continue
+        where = f"{path}, [model] {key}"
+        if not asked:
+            raise InputError(f"{where}: nothing of a {kind} depends on it; leave it out")
+        half_width = interval_to_si(text, "1", where)
+        if not 0.0 <= half_width < most:
+            raise InputError(f"{where}: {text} is no half width; write 0 to {100.0 * most:.0f} %")
+        declared |= {name: Declaration(PARAMETERS[name].default, half_width) for name in names}
+    return declared
 
 
 def check_bounds(parameter: Parameter, value: float, where: str) -> None:

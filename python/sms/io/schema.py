@@ -82,6 +82,10 @@ class ModelTable(Table):
     chambers: Literal["polytropic", "energy"] = "polytropic"
     flow_map_uncertainty: TextOrNumber | None = None
     """Relative half width of the flow through the valve at an opening; without it, that of params.def."""
+    friction_map_uncertainty: TextOrNumber | None = None
+    """Relative half width of friction at a speed; without it, that of params.def."""
+    sensor_linearity: TextOrNumber | None = None
+    """Half width of a sensor's deviation from its best straight line, of its span; without it, that of signals.def."""
 
 
 class ControlTable(Table):

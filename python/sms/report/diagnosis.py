@@ -44,8 +44,8 @@ def report_html(diagnosis: Diagnosis) -> str:
         f'<nav aria-label="Parts of this page">{links}</nav>'
         f"{''.join(content for _, content in parts.values())}</main>"
     )
-    script = plots(curves.payload(diagnosis), "figures.js") if diagnosis.series else ""
-    return page(f"Diagnosis: {diagnosis.title or diagnosis.rig}", body, script)
+    scripts = plots(curves.payload(diagnosis), "figures.js") if diagnosis.series else None
+    return page(f"Diagnosis: {diagnosis.title or diagnosis.rig}", body, scripts)
 
 
 def _curves(diagnosis: Diagnosis) -> str:

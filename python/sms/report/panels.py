@@ -79,5 +79,5 @@ def figure(
 
 def panels_page(title: str, body: str, figures: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
     """The whole page; `figures` by their identifier."""
-    script = plots(dict(figures), "panels.js") if figures else ""
-    return page(title, f"<main>{body}</main>", script, asset("panels.css"))
+    scripts = plots(dict(figures), "panels.js") if figures else None
+    return page(title, f"<main>{body}</main>", scripts, asset("panels.css"))

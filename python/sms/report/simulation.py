@@ -55,8 +55,7 @@ def simulation_html(
         + section("setup", "What was simulated", _setup(scenario, command))
         + f"<p class='small'>sms {_core.__version__}; {esc(scenario.path.name)}</p></main>"
     )
-    scripts = plots(data, "plots.js") + f"<script>{asset('scene.js')}</script>"
-    return page(scenario.title, body, scripts, asset("plots.css"))
+    return page(scenario.title, body, plots(data, "plots.js", "scene.js"), asset("plots.css"))
 
 
 def _scene_section(time: Array) -> str:

@@ -34,7 +34,7 @@ from sms.estimation.least_squares import Free, changed, fit_windows
 from sms.estimation.problem import Problem
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
-from sms.parameters import FLOW_MAP
+from sms.parameters import MAPS
 
 
 @dataclass(frozen=True)
@@ -130,9 +130,9 @@ def errors_of(
         for run in runs.motions
         if _averaging(run).shape[0]
     ]
-    # An error of the tables would take any flow that is missing.
-    free = [f for f in free_of(fitted.hypothesis) if f.name not in FLOW_MAP]
-    neutral = [n for n in FLOW_MAP if n in fitted.hypothesis.free]
+    # An error of the maps would take any flow or friction that is missing.
+    free = [f for f in free_of(fitted.hypothesis) if f.name not in MAPS]
+    neutral = [n for n in MAPS if n in fitted.hypothesis.free]
     params = changed(fitted.params, neutral, np.zeros(len(neutral)))
     felt = _felt(fed, params, [f.name for f in free])
     return fed, [

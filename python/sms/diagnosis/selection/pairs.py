@@ -15,7 +15,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, logarithms
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, fit, lean, residual_of
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step, best_steps, extended
 from sms.diagnosis.selection.judgement import alike, judge
@@ -101,7 +101,7 @@ def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
         return trial.fitted
     hypothesis = extended(current.hypothesis, trial.effect, data)
     allowed = data.allowed(data.identify)
-    return fit(hypothesis, data.identify, current.params, PAIR_STEPS, discrepancy=allowed)
+    return lean(fit(hypothesis, data.identify, current.params, PAIR_STEPS, discrepancy=allowed))
 
 
 def _together(one: Fitted, other: Fitted, data: Data, step: Step | None) -> Fitted:
@@ -120,7 +120,7 @@ def _together(one: Fitted, other: Fitted, data: Data, step: Step | None) -> Fitt
     runs = data.identify
     left = [_of_residual(residual_of(runs, start), data) for start in starts]
     start = starts[int(np.argmin(left))]
-    return fit(hypothesis, runs, start, PAIR_STEPS, discrepancy=data.allowed(runs))
+    return lean(fit(hypothesis, runs, start, PAIR_STEPS, discrepancy=data.allowed(runs)))
 
 
 def _left_of(fitted: Fitted, data: Data) -> float:

@@ -29,7 +29,16 @@ from sms.diagnosis.adequacy.residual_energy import (
     small,
 )
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, looked_at_again, refitted, residual_of
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    fit,
+    lean,
+    looked_at_again,
+    refitted,
+    residual_of,
+    without_sensitivities,
+)
 from sms.diagnosis.selection.candidates import Trial, moved, room_of, score_effects
 from sms.diagnosis.selection.finite_steps import (
     Step,
@@ -84,7 +93,9 @@ def try_effects(
     ]
 
     def candidate(k: int) -> Fitted:
-        return _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
+        return lean(
+            _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
+        )
 
     first = {k: candidate(k) for k in chosen}
     best = min(first, key=lambda k: logarithms(data.identify, first[k].fit.residual))
@@ -181,6 +192,7 @@ def stepwise_selection(
             [] if members or number > 1 else try_pairs(trials, current, data, original, needed, rng)
         )
         rounds += together or [Round(trials, members)]
+        _forget(trials, current, data)
         found_now = [r.members for r in together] or ([members] if members else [])
         if not found_now:
             break
@@ -198,6 +210,15 @@ def stepwise_selection(
     while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
         found, current = fewer
     return Outcome(current, rounds, found)
+
+
+def _forget(trials: Sequence[Trial], current: Fitted, data: Data) -> None:
+    """Of what was not accepted the values are kept, and its sensitivities and residuals on other records are not."""
+    for trial in trials:
+        if trial.fitted is not current and not trial.accepted:
+            data.refitted_of.pop(id(trial.fitted), None)
+            data.unseen_of.pop(id(trial.fitted), None)
+            trial.fitted = without_sensitivities(trial.fitted)
 
 
 def _converged(fitted: Fitted, data: Data) -> Fitted:
@@ -234,7 +255,8 @@ def _without_one(
 ) -> tuple[list[list[Trial]], Fitted] | None:
     """Fewer causes and their model, where one has stood in for the others; None where each is missed.
 
-    A cause is missed if without it the others leave at least as much more as a cause has to take.
+    A cause is missed if without it the others leave at least as much more as a cause has to take, and more than what
+    ends the search: a pair's second one may have stood in for a first one that was not fitted to its end.
     """
     left = Left.by(final, data)
     for members in found:
@@ -245,7 +267,7 @@ def _without_one(
         counted = [(left, other)]
         if channel is not None:
             counted.append((left.of(channel), other.of(channel)))
-        if all(
+        if nothing_left(other, data) or all(
             now.excess(r) >= (1.0 - LEAST_SHARE) * then.excess(r)
             for now, then in counted
             for r in ROLES
