@@ -28,6 +28,8 @@ from sms.diagnosis.localisation.signal_functions import (
 )
 from sms.diagnosis.localisation.unknown_inputs import thinned
 from sms.diagnosis.thresholds import BENDS
+from sms.estimation.discrepancy import Discrepancy
+from sms.estimation.nuisance import Nuisance
 from sms.estimation.windows import Runs
 
 ITERATIONS = 40
@@ -41,17 +43,19 @@ def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
 
     Unchanged for a model that was not fitted with a discrepancy or has no equation for it. Never smaller than it was.
     """
-    functions = _functions(fitted, runs)
-    if functions is None or not fitted.movable:
+    if fitted.discrepancy is None or not fitted.movable:
         return fitted
     nuisance = nuisance_of(fitted, white=True)
+    functions = _functions(fitted.discrepancy, nuisance, runs)
+    if functions is None:
+        return fitted
     stacked = np.vstack([nuisance.jacobian, nuisance.pull])
     scale = np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
     jacobian = thinned(runs, stacked / scale)
     residual = np.concatenate([fitted.whiten(fitted.fit.residual), nuisance.departure])
     systematic = Systematic.of(
         jacobian,
-        thinned(runs, nuisance.with_declared(fitted.whiten(functions.columns))),
+        functions.columns,
         thinned(runs, residual[:, None])[:, 0],
         functions.group,
         fitted.hypothesis.inflation,
@@ -68,19 +72,18 @@ def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
 
 @dataclass(frozen=True)
 class Functions:
-    """Sensitivities (rows, functions) to unknown functions of signals in the equations."""
+    """Sensitivities (m, functions) to unknown functions of signals in the equations: white, thinned, zero for what is
+    declared."""
 
     columns: Array
     group: Index
     """(functions,): to which pair of an equation and a signal each belongs."""
 
 
-def _functions(fitted: Fitted, runs: Runs) -> Functions | None:
+def _functions(discrepancy: Discrepancy, nuisance: Nuisance, runs: Runs) -> Functions | None:
     """Every equation with every signal; equations that every leg has are one, with the signals of each. None without
     an equation or a signal that moves."""
-    if fitted.discrepancy is None:
-        return None
-    hidden, signals = fitted.discrepancy.inputs, signals_of(runs)
+    hidden, signals = discrepancy.inputs, signals_of(runs)
     by_leg = alike(tuple(runs.kind.hidden))
     single = {
         e: [k] for k, e in enumerate(runs.kind.hidden) if all(k not in n for n in by_leg.values())
@@ -94,12 +97,11 @@ def _functions(fitted: Fitted, runs: Runs) -> Functions | None:
             at = points(np.concatenate(values))
             if np.ptp(at) > 0.0:
                 each = zip(numbers, values, strict=True)
-                parts.append(
-                    np.sum(
-                        [through_plant(runs, of_input(hidden, k), process(v, at)) for k, v in each],
-                        axis=0,
-                    )
+                moved = sum(
+                    through_plant(runs, of_input(hidden, k), process(v, at)) for k, v in each
                 )
+                white = discrepancy.whitener.whiten(np.asarray(moved))
+                parts.append(thinned(runs, nuisance.with_declared(white)))
     if not parts:
         return None
     group = np.repeat(np.arange(len(parts)), [p.shape[1] for p in parts])
