@@ -121,6 +121,9 @@ friction or flow is right to the last tenth everywhere."""
 PLAY = 0.02
 """V to either side, for which the sensitivity is taken. Judgement: above a command's noise, below a dead band."""
 
+LEAST_PLAY = 2.4e-3
+"""V: one step of a converter of 12 bits over 10 V. A play below it is none: no command is that fine."""
+
 # ---- Record consistency ----------------------------------------------------------------------------
 
 TRIED_BY_RECORD = 3

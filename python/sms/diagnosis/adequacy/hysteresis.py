@@ -23,7 +23,7 @@ from sms.diagnosis.adequacy.subset_estimates import (
 )
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, refitted
-from sms.diagnosis.thresholds import APART, APART_BY, PLAY
+from sms.diagnosis.thresholds import APART, APART_BY, LEAST_PLAY, PLAY
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
 
@@ -40,8 +40,8 @@ class Hysteresis:
 
 
 def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
-    """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none, or where
-    the cause grows beside it."""
+    """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none worth a
+    word, or where the cause grows beside it."""
     gram, rows = np.zeros((3, 3)), 0
     for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
         played = _sensitivity(runs, at, effect)
@@ -58,7 +58,8 @@ def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
     alone = fitted.params[effect.parameters[0]]
     shift = alone - data.rig.declared(effect.parameters[0]).value
     lost = -float(step) if shift > 0.0 else float(step)
-    if play < APART * play_error or lost < max(APART * error, APART_BY * abs(shift)):
+    there = play > max(APART * play_error, LEAST_PLAY)
+    if not there or lost < max(APART * error, APART_BY * abs(shift)):
         return None
     return Hysteresis(
         effect, alone, (float(alone + step), float(error)), (float(play), float(play_error))
