@@ -53,11 +53,11 @@ struct SignalInfo {
 const SignalInfo signal_table[] = {
 #define SMS_SIGNAL(name, unit, label, low, high, sweep) {#name, unit, label, low, high, sweep, 0.0, false, false},
 #define SMS_LEG_SIGNAL(name, unit, label, low, high, sweep) {#name, unit, label, low, high, sweep, 0.0, true, false},
-#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate, lag, clock, datum, \
-                       from, to, low, high, sweep, noise)                                                           \
+#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, linearity_known, label, value, rate, lag, clock, \
+                       datum, from, to, low, high, sweep, noise)                                                  \
   {#name, unit, label, low, high, sweep, noise, true, true},
-#define SMS_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate, lag, clock, datum, from, \
-                   to, low, high, sweep, noise)                                                                       \
+#define SMS_SENSOR(name, unit, zero, zero_known, gain_known, linearity_known, label, value, rate, lag, clock, datum, \
+                   from, to, low, high, sweep, noise)                                                                \
   {#name, unit, label, low, high, sweep, noise, false, true},
 #include "sms/signals.def"
 };

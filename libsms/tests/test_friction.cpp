@@ -134,6 +134,18 @@ TEST_CASE("a friction curve that is off by so much at the speeds of its knots, b
       const sms::Params<double> exact;
       CHECK(sms::friction(p, s) == doctest::Approx((1.0 + error) * sms::friction(exact, s)));
       CHECK(sms::friction_two_branch(p, s) == doctest::Approx((1.0 + error) * sms::friction_two_branch(exact, s)));
+      // Bristles that are bent as far as they are in steady sliding, where they carry all of the dry friction.
+      const double dry = sms::stribeck_force(exact, velocity), stiffness = p.bristle_stiffness;
+      const double bent = (velocity < 0.0 ? -1.0 : 1.0) * dry / stiffness, coulomb = bent * p.coulomb_force / dry;
+      const auto lugre = sms::lugre_friction(p, s, (1.0 + error) * bent),
+                 lugre_exact = sms::lugre_friction(exact, s, bent);
+      const auto dahl = sms::dahl_friction(p, s, (1.0 + error) * coulomb),
+                 dahl_exact = sms::dahl_friction(exact, s, coulomb);
+      for (const auto& [off, of_curve] : {std::pair{lugre, lugre_exact}, {dahl, dahl_exact}}) {
+        CHECK(off.force == doctest::Approx((1.0 + error) * of_curve.force));
+        CHECK(std::abs(off.deflection_rate) < 1e-12);
+        CHECK(std::abs(of_curve.deflection_rate) < 1e-12);
+      }
       const double drive = random.uniform(-300.0, 300.0);
       for (const sms::FrictionLaw law :
            {sms::FrictionLaw::acceleration_dependent, sms::FrictionLaw::two_branch, sms::FrictionLaw::stribeck}) {

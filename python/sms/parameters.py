@@ -48,6 +48,7 @@ FLOW_MAP = tuple(name for name in PARAMETERS if name.startswith("flow_map_"))
 FRICTION_MAP = tuple(name for name in PARAMETERS if name.startswith("friction_map_"))
 """Relative errors of the friction curve, at some speeds."""
 MAPS = FLOW_MAP + FRICTION_MAP
+"""Of curves that were measured, none of them exactly."""
 LINEARITY = tuple(
     name
     for name, row in PARAMETERS.items()

@@ -35,7 +35,7 @@
 #include <cmath>
 
 #include "sms/effect.hpp"
-#include "sms/limit.hpp"
+#include "sms/map_error.hpp"
 #include "sms/params.hpp"
 #include "sms/scalar.hpp"
 
@@ -84,23 +84,18 @@ S friction_ramp(const Params<S>& p, const S& velocity) {
   return ramp;
 }
 
-// 1 and the curve's relative error at this velocity.
+// Friction over that of the curve: 1 and the curve's relative error at this velocity.
 template <typename S>
 S friction_map(const Params<S>& p, const S& velocity) {
   using P = Params<S>;
   using V = ValueOf<S>;
-  constexpr int knots = 3;
-  constexpr V at[knots] = {V(0.03), V(0.12), V(0.3)};  // m/s
+  constexpr V knot[] = {V(0.03), V(0.12), V(0.3)};  // m/s
   static constexpr S P::*extend[] = {&P::friction_map_extend_1, &P::friction_map_extend_2, &P::friction_map_extend_3};
   static constexpr S P::*retract[] = {&P::friction_map_retract_1, &P::friction_map_retract_2,
                                       &P::friction_map_retract_3};
   const bool extends = velocity > S(0);
-  const auto& error = extends ? extend : retract;
   const S speed = extends ? velocity : S(-velocity);
-  const int above = speed > S(at[1]) ? 2 : 1;
-  const S share = limited<S>((speed - S(at[above - 1])) / S(at[above] - at[above - 1]), S(0), S(1));
-  const S& below = p.*error[above - 1];
-  return S(1) + below + share * (p.*error[above] - below);
+  return S(1) + map_error(p, extends ? extend : retract, map_place<S>(knot, speed));
 }
 
 // |v / width|^delta, held at 1000 from a million widths on: with delta >= 0.5 (its bound) it is no less there, and exp

@@ -33,7 +33,7 @@ class ActuatorSensors {
   // known.
   ActuatorSensors(const Params<S>& p, const S& step, double moved = 0.0)
       :
-#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate_, ...) \
+#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, linearity_known, label, value, rate_, ...) \
   name##_(name##_sensor(p), step),
 #include "sms/signals.def"
         pushed_(moved) {
@@ -49,7 +49,7 @@ class ActuatorSensors {
     }
     begun_ = true;
     leg.eye = eye_;
-#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate_, ...) \
+#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, linearity_known, label, value, rate_, ...) \
   name##_.follow(value, rate_);
 #include "sms/signals.def"
   }
@@ -58,7 +58,7 @@ class ActuatorSensors {
   template <typename Visit>
   void each(LegSeen<S> leg, int number, const Visit& visit) const {
     leg.eye = eye_;
-#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate_, ...) \
+#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, linearity_known, label, value, rate_, ...) \
   visit(#name, number, name##_, S(value), S(rate_));
 #include "sms/signals.def"
   }
@@ -66,7 +66,7 @@ class ActuatorSensors {
   S extension_reading(const S& velocity) const { return extension_.reading(eye_, velocity); }
 
  private:
-#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate_, ...) \
+#define SMS_LEG_SENSOR(name, unit, zero, zero_known, gain_known, linearity_known, label, value, rate_, ...) \
   Sensor<S> name##_;
 #include "sms/signals.def"
   double pushed_ = 0.0;

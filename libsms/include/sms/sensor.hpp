@@ -51,12 +51,12 @@ S sensor_truth(const S& reading, const S& gain, const S& offset) {
 // What is wrong with one sensor, by the parameters.
 template <typename S>
 struct SensorErrors {
-  S gain, offset;  // offset in the signal's unit
-  S lag;           // s, of its filter
-  S clock;         // s, of its logger
-  S datum;         // in the signal's unit
-  S linearity{0};  // of its span
-  S from{0}, to{1};
+  S gain, offset;    // offset in the signal's unit
+  S lag;             // s, of its filter
+  S clock;           // s, of its logger
+  S datum;           // in the signal's unit
+  S linearity{0};    // of its span
+  S from{0}, to{1};  // its span, in the signal's unit
 
   S reading(const S& truth) const {
     const S straight =
@@ -97,18 +97,18 @@ struct SensorErrors {
 };
 
 // extension_sensor(p), supply_pressure_sensor(p), ...
-#define SMS_SENSOR(name, unit, zero, zero_known, gain_known, line_known, label, value, rate, lag, clock, datum, from, \
-                   to, ...)                                                                                           \
-  template <typename S>                                                                                               \
-  SensorErrors<S> name##_sensor(const Params<S>& p) {                                                                 \
-    return {p.sensor_gain_##name,                                                                                     \
-            p.sensor_offset_##name,                                                                                   \
-            S(lag),                                                                                                   \
-            S(clock),                                                                                                 \
-            S(datum),                                                                                                 \
-            p.sensor_linearity_##name,                                                                                \
-            S(from),                                                                                                  \
-            S(to)};                                                                                                   \
+#define SMS_SENSOR(name, unit, zero, zero_known, gain_known, linearity_known, label, value, rate, lag, clock, datum, \
+                   from, to, ...)                                                                                    \
+  template <typename S>                                                                                              \
+  SensorErrors<S> name##_sensor(const Params<S>& p) {                                                                \
+    return {p.sensor_gain_##name,                                                                                    \
+            p.sensor_offset_##name,                                                                                  \
+            S(lag),                                                                                                  \
+            S(clock),                                                                                                \
+            S(datum),                                                                                                \
+            p.sensor_linearity_##name,                                                                               \
+            S(from),                                                                                                 \
+            S(to)};                                                                                                  \
   }
 #include "sms/signals.def"
 

@@ -34,6 +34,7 @@
 #include "sms/effect.hpp"
 #include "sms/filter.hpp"
 #include "sms/limit.hpp"
+#include "sms/map_error.hpp"
 #include "sms/valve_table.hpp"
 
 namespace sms {
@@ -117,48 +118,28 @@ OpenEdges<S> open_edges(const Params<S>& p, ValveLaw law, const HeatRatios<S>& r
 
 // ---- what is not known of the tables ----
 
-constexpr int flow_map_knots() { return 6; }
-
-// Between which two knots an opening lies, and how far from the lower one to the upper one, 0 to 1.
+// Where an opening lies among the knots of the flow's error.
 template <typename S>
-struct FlowMapPlace {
-  int above;
-  S share;
-};
-
-template <typename S>
-FlowMapPlace<S> flow_map_place(const S& opening) {
+MapPlace<S> flow_map_place(const S& opening) {
   using V = ValueOf<S>;
-  constexpr V knot[flow_map_knots()] = {V(0.6), V(0.75), V(0.95), V(1.25), V(1.8), V(3.0)};  // V
-  int above = 1;
-  while (above < flow_map_knots() - 1 && opening > S(knot[above])) {
-    ++above;
-  }
-  const S span(knot[above] - knot[above - 1]);
-  return {above, limited<S>((opening - S(knot[above - 1])) / span, S(0), S(1))};
-}
-
-// Relative error of the flow there from its values at the knots; zero everywhere, with its derivatives, where they are.
-template <typename S>
-S flow_map_error(const Params<S>& p, S Params<S>::*const (&at_knot)[flow_map_knots()], const FlowMapPlace<S>& place) {
-  const S& below = p.*at_knot[place.above - 1];
-  return below + place.share * (p.*at_knot[place.above] - below);
+  constexpr V knot[] = {V(0.6), V(0.75), V(0.95), V(1.25), V(1.8), V(3.0)};  // V
+  return map_place<S>(knot, opening);
 }
 
 template <typename S>
-S feed_map_error(const Params<S>& p, const FlowMapPlace<S>& place) {
+S feed_map_error(const Params<S>& p, const MapPlace<S>& place) {
   using P = Params<S>;
   static constexpr S P::*at_knot[] = {&P::flow_map_feed_1, &P::flow_map_feed_2, &P::flow_map_feed_3,
                                       &P::flow_map_feed_4, &P::flow_map_feed_5, &P::flow_map_feed_6};
-  return flow_map_error(p, at_knot, place);
+  return map_error(p, at_knot, place);
 }
 
 template <typename S>
-S vent_map_error(const Params<S>& p, const FlowMapPlace<S>& place) {
+S vent_map_error(const Params<S>& p, const MapPlace<S>& place) {
   using P = Params<S>;
   static constexpr S P::*at_knot[] = {&P::flow_map_vent_1, &P::flow_map_vent_2, &P::flow_map_vent_3,
                                       &P::flow_map_vent_4, &P::flow_map_vent_5, &P::flow_map_vent_6};
-  return flow_map_error(p, at_knot, place);
+  return map_error(p, at_knot, place);
 }
 
 // ---- flow ----
@@ -212,7 +193,7 @@ EdgeFlows<S> valve_flows(const Params<S>& p, ValveLaw law, const HeatRatios<S>& 
   const S opening = valve_opening(p, voltage);
   const OpenEdges<S> edges = open_edges(p, law, ratios, opening);
   const S gain = law == ValveLaw::classic ? S(1) : p.mass_flow_gain;
-  const FlowMapPlace<S> place = flow_map_place<S>(abs(opening));
+  const MapPlace<S> place = flow_map_place<S>(abs(opening));
   const S feed_gain = gain * (S(1) + feed_map_error(p, place));
   const S vent_gain = gain * (S(1) + p.exhaust_flow_change) * (S(1) + vent_map_error(p, place));
   if (opening >= S(0)) {

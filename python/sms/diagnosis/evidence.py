@@ -9,15 +9,9 @@ import numpy as np
 
 from sms.arrays import Array, Index
 from sms.diagnosis.adequacy.repeatability import Repeatability, arrangement
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
-    fit,
-    refitted,
-    refitted_on,
-    residual_of,
-)
+from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
 from sms.diagnosis.localisation.ripple import find_ripple
+from sms.diagnosis.other_records import refitted, refitted_on
 from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Remainder, Series
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.outcome import Outcome, Round

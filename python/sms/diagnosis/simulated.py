@@ -46,12 +46,12 @@ from sms.diagnosis.hypothesis import (
     fit,
     fit_with_discrepancy,
     nuisance_of,
-    unseen,
 )
 from sms.diagnosis.localisation.empirical_term import empirical_of
 from sms.diagnosis.localisation.equation_error import fed_equations
 from sms.diagnosis.localisation.residual_spectrum import symptoms_of
 from sms.diagnosis.localisation.unknown_inputs import estimate_unknown_inputs
+from sms.diagnosis.other_records import unseen
 from sms.diagnosis.preparation import make_data, without_windows
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.result import (

@@ -168,7 +168,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
         skip_first=data.skip_first,
         speed_above=speed_above,
         signals=sources_of(file, controls, path),
-        parameters=_of_model(file, path)
+        parameters=_half_widths(file, path)
         | {
             name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(file.rig.kind))
             for name, table in file.parameters.items()
@@ -253,8 +253,8 @@ def _declaration(
     return Declaration(value, uncertainty, table.fit)
 
 
-def _of_model(file: RigFile, path: Path) -> dict[str, Declaration]:
-    """Errors of flow, friction and sensors' lines, where [model] says how large they are."""
+def _half_widths(file: RigFile, path: Path) -> dict[str, Declaration]:
+    """Of errors of flow, friction and sensors' lines, where [model] says how large these may be."""
     kind, model = file.rig.kind, file.model
     commanded = kind != "spool_test" and "valve_command" in map(without_leg, KINDS[kind].needed)
     moves = kind in ("bench", "platform")
@@ -264,12 +264,12 @@ def _of_model(file: RigFile, path: Path) -> dict[str, Declaration]:
         "sensor_linearity": (LINEARITY, 0.02, moves or kind == "tank"),
     }
     declared: dict[str, Declaration] = {}
-    for key, (names, most, asked) in said.items():
+    for key, (names, most, has_any) in said.items():
         text = getattr(model, key)
         if text is None:
             continue
         where = f"{path}, [model] {key}"
-        if not asked:
+        if not has_any:
             raise InputError(f"{where}: nothing of a {kind} depends on it; leave it out")
         half_width = interval_to_si(text, "1", where)
         if not 0.0 <= half_width < most:

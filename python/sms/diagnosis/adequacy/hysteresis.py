@@ -22,7 +22,8 @@ from sms.diagnosis.adequacy.subset_estimates import (
     linear,
 )
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, refitted
+from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.other_records import refitted
 from sms.diagnosis.thresholds import APART, APART_BY, LEAST_PLAY, PLAY
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, unseen
+from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.other_records import unseen
 from sms.estimation.windows import Runs
 
 

@@ -30,8 +30,9 @@ from sms.diagnosis.adequacy.subset_estimates import (
     parts_of,
 )
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, refitted
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.localisation.activity import Activity, activity, own_signals
+from sms.diagnosis.other_records import refitted
 from sms.diagnosis.thresholds import APART_BY, LEAST_SHARE
 from sms.estimation.windows import Runs
 

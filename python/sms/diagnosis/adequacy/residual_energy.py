@@ -12,7 +12,8 @@ from typing import Literal
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, cost_of_departure, refitted
+from sms.diagnosis.hypothesis import Data, Fitted, cost_of_departure
+from sms.diagnosis.other_records import refitted
 from sms.diagnosis.thresholds import LEAST_OF_NOISE, TOLERATED
 from sms.estimation.windows import Runs
 
@@ -36,7 +37,7 @@ class Left:
     """What a model leaves, window by window: (windows, channels) on records of either role.
 
     On validation records its causes are held, and what is known may move within what is declared: whether the model is
-    of the right form is one question, how well its fitted values predict another (hypothesis.unseen).
+    of the right form is one question, how well its fitted values predict another (other_records.unseen).
 
     With records of the healthy machine the unit is what its own model leaves. What is known is then known so well that
     how far it had to move is a measurement too, and counts in every window alike.

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from sms.arrays import Array, Index
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import value_of
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, refitted
+from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
+from sms.diagnosis.other_records import refitted
 from sms.diagnosis.result import ParameterValue
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.estimation.nuisance import Nuisance

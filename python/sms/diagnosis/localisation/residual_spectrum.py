@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, unseen
+from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.other_records import unseen
 from sms.diagnosis.result import Symptom
 from sms.diagnosis.thresholds import POWER_SHARE
 from sms.estimation.problem import Window

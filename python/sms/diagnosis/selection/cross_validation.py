@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, refitted
+from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
+from sms.diagnosis.other_records import refitted
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
 from sms.estimation.nuisance import Nuisance
 from sms.estimation.windows import Runs

@@ -8,7 +8,8 @@ import numpy as np
 
 from sms.diagnosis.adequacy.repeatability import Repeatability, repeatability
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, residual_of, unseen
+from sms.diagnosis.hypothesis import Data, Fitted, residual_of
+from sms.diagnosis.other_records import unseen
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.selection.candidates import try_effects
 from sms.diagnosis.selection.outcome import Outcome, Round

@@ -14,7 +14,8 @@ from scipy.stats import chi2, wilcoxon
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, Healthy, refitted
+from sms.diagnosis.hypothesis import Data, Fitted, Healthy
+from sms.diagnosis.other_records import refitted
 from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.outcome import Round

@@ -29,16 +29,8 @@ from sms.diagnosis.adequacy.residual_energy import (
     small,
 )
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
-    fit,
-    lean,
-    looked_at_again,
-    refitted,
-    residual_of,
-    without_sensitivities,
-)
+from sms.diagnosis.hypothesis import Data, Fitted, fit, lean, residual_of, without_sensitivities
+from sms.diagnosis.other_records import looked_at_again, refitted
 from sms.diagnosis.selection.candidates import Trial, moved, room_of, score_effects
 from sms.diagnosis.selection.finite_steps import (
     Step,

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, unseen
+from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.other_records import unseen
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.thresholds import ALIKE, SIGNIFICANT, WORTH, WORTH_OF_NOISE
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
