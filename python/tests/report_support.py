@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, get_args
 
 import numpy as np
+from sms.diagnosis.remainder import Remainder
 from sms.diagnosis.result import (
     Candidate,
     Cause,
@@ -18,7 +19,6 @@ from sms.diagnosis.result import (
     NotTestable,
     ParameterValue,
     Related,
-    Remainder,
     Series,
     Verdict,
 )

@@ -127,13 +127,16 @@ def test_what_repeats_is_told_from_what_does_not(rng: np.random.Generator) -> No
 
 
 def test_a_drift_is_told_from_scatter(rng: np.random.Generator) -> None:
-    stroke, record, direction, extension = simulated_strokes(rng)
-    scatter = rng.normal(0.0, 0.2, 40)[stroke]
-    order = (stroke % 20 - 9.5) / 9.5
-    split = repeatability(scatter + 0.5 * order, record, stroke, extension, direction, rng)
-    assert split.drift == pytest.approx(np.mean((0.5 * order) ** 2), rel=0.6)
-    assert split.drift_p_value < 0.01
-    assert repeatability(scatter, record, stroke, extension, direction, rng).drift < 0.02
+    drifts = []
+    for _ in range(9):
+        stroke, record, direction, extension = simulated_strokes(rng)
+        scatter = rng.normal(0.0, 0.2, 40)[stroke]
+        order = (stroke % 20 - 9.5) / 9.5
+        split = repeatability(scatter + 0.5 * order, record, stroke, extension, direction, rng)
+        drifts.append(split.drift)
+        assert split.drift_p_value < 0.01
+        assert repeatability(scatter, record, stroke, extension, direction, rng).drift < 0.02
+    assert np.median(drifts) == pytest.approx(np.mean((0.5 * order) ** 2), rel=0.4)
 
 
 def test_blocks_hold_several_strokes_only_where_noise_lasts_long(rng: np.random.Generator) -> None:

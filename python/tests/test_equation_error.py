@@ -16,7 +16,7 @@ from sms.diagnosis.hypothesis import baseline_hypothesis, fit
 from sms.diagnosis.localisation.equation_error import fed_equations, feed, smoothed
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data
-from sms.diagnosis.result import EquationError, FedEquations, Hidden, Shape
+from sms.diagnosis.remainder import EquationError, FedEquations, Hidden, Shape
 from sms.diagnosis.wording_simulated import agree, two_ways
 from sms.io import load_rig
 from sms.report.origin import _fed

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sms.diagnosis.design.detection_limits import published_rig
 from sms.diagnosis.design.next_experiment import next_experiment
-from sms.diagnosis.result import Hidden, Shape
+from sms.diagnosis.remainder import Hidden, Shape
 from sms.rigs.kinds import KINDS
 
 

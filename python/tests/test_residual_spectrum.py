@@ -11,7 +11,8 @@ from scipy.signal import lfilter
 from sms.diagnosis.design import closed_loop_performance
 from sms.diagnosis.design.detection_limits import published_rig
 from sms.diagnosis.localisation.residual_spectrum import _below
-from sms.diagnosis.result import InUse, Symptom
+from sms.diagnosis.remainder import Symptom
+from sms.diagnosis.result import InUse
 from sms.report.diagnosis import report_html
 
 SLOW = Symptom("extension", "m", 1.2e-4, 7e-5, True, "ends", 5.0, 6.0, 0.44, 4.0)

@@ -26,7 +26,7 @@ from sms.diagnosis.hypothesis import (
 )
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.reference import from_reference
-from sms.diagnosis.result import Unexplained
+from sms.diagnosis.remainder import Unexplained
 from sms.diagnosis.thresholds import LEAST_SHARE
 from sms.estimation.least_squares import changed
 from sms.estimation.run import is_held

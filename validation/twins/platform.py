@@ -19,17 +19,12 @@ from validation.reference.compiled import compiled
 from validation.reference.multibody.mechanism import mechanism_of
 from validation.reference.plants.mechanism import (
     Mechanism,
-    add,
-    attitude,
-    cross,
-    dot,
     equations,
     joint_arm,
     mechanism_at_rest,
-    mix,
     pose_rates,
-    times,
 )
+from validation.reference.plants.vectors import add, attitude, cross, dot, mix, times
 from validation.twins.air import Array, chamber_rates
 from validation.twins.clock import Clock
 from validation.twins.controller import answered

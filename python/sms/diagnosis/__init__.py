@@ -1,11 +1,16 @@
 """What a simulation gets wrong, and why.
 
-pipeline         the steps, from a rig file to a Diagnosis (result.py)
-simulated        the same steps for the rigs that are simulated against their records
+pipeline         from a rig file to a Diagnosis (result.py): read, check, investigate, complete
+simulated        investigate and complete where a simulation is held against records
+strokes          the same where a force balance is, stroke by stroke
 hypothesis       which parameters may move, and their fit
+other_records    a model on the records that it was not fitted to
+preparation      records by role, as problems
+reference        what records of the healthy machine tell
 evidence         sizes with their standard errors, prediction gains, what is left
 free_run         the error of a simulation over each whole record
 related_rigs     the causes of one rig followed to its relatives
+remainder        what a model leaves, as part of an answer (result.py)
 wording          the answer in words; of simulated rigs: wording_simulated
 thresholds       every tuning constant, with its origin
 effects/         the effects that can be named

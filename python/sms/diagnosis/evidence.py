@@ -8,13 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.adequacy.repeatability import Repeatability, arrangement
-from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of
-from sms.diagnosis.localisation.ripple import find_ripple
+from sms.diagnosis.hypothesis import Data, Fitted, residual_of
 from sms.diagnosis.other_records import refitted, refitted_on
-from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Remainder, Series
+from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Series
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.selection.outcome import Outcome, Round
+from sms.diagnosis.selection.outcome import Round
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
 from sms.estimation.kind import Kind
 from sms.estimation.run import Run
@@ -27,39 +25,6 @@ def value_of(fitted: Fitted, name: str, old: float, error: float | None = None) 
         error = fitted.standard_error(name) if name in fitted.hypothesis.free else 0.0
     unit = fitted.hypothesis.table[name].unit
     return ParameterValue(name, fitted.params[name], error, unit, old)
-
-
-def found_value(fitted: Fitted, name: str, old: float, data: Data) -> ParameterValue:
-    """A cause's parameter. Its error is that between strokes or that between records, whichever is larger."""
-    estimates = record_by_record(fitted, name, data)
-    value = fitted.params[name]
-    weight = sum(e.information for e in estimates)
-    scatter = sum(e.information * (e.value - value) ** 2 for e in estimates)
-    between = np.sqrt(scatter / weight / (len(estimates) - 1))
-    return value_of(fitted, name, old, max(fitted.standard_error(name), float(between)))
-
-
-def instead(
-    outcome: Outcome, baseline: Fitted, members: Sequence[Trial], other: Trial, data: Data
-) -> Fitted:
-    """The final model with another member of one class in the place of the one that stands for it."""
-    hypothesis = baseline.hypothesis
-    for chosen in outcome.groups:
-        effect = other.effect if chosen is members else chosen[0].effect
-        hypothesis = hypothesis.with_effect(effect)
-    return fit(hypothesis, data.identify)
-
-
-def cause_of(members: Sequence[Trial], outcome: Outcome, baseline: Fitted, data: Data) -> Cause:
-    first = members[0]
-    start = data.rig.start()
-
-    def found(m: Trial) -> tuple[ParameterValue, ...]:
-        at = outcome.final if m is first else instead(outcome, baseline, members, m, data)
-        return tuple(found_value(at, n, start[n], data) for n in m.effect.parameters)
-
-    each = record_by_record(outcome.final, first.effect.parameters[0], data)
-    return cause_from(members, found, {e.record: e.value for e in each})
 
 
 def cause_from(
@@ -99,28 +64,6 @@ def cause_from(
         share_high=first.share[2],
         cross_validated=first.cross_validated,
     )
-
-
-@dataclass(frozen=True)
-class RecordEstimate:
-    """One parameter refitted on one record alone, all others held."""
-
-    record: str
-    value: float
-    information: float
-    """Sum of the squared sensitivities: its weight among the records."""
-
-
-def record_by_record(fitted: Fitted, name: str, data: Data) -> list[RecordEstimate]:
-    out = []
-    for runs in (data.identify, data.validate):
-        for number, motion in enumerate(runs.motions):
-            residual, jacobian = runs.part(number).problem.evaluate(fitted.params, [name])
-            column = jacobian[:, 0]
-            information = max(float(column @ column), 1e-300)
-            step = -float(column @ residual) / information
-            out.append(RecordEstimate(motion.name, fitted.params[name] + step, information))
-    return out
 
 
 def gains(
@@ -206,23 +149,6 @@ def gains_on(
             squares = before[rows] ** 2, after[rows] ** 2
             again = float(np.mean(refitted[0][rows] ** 2)), float(np.mean(refitted[1][rows] ** 2))
             yield gain_of(where, *squares, block, own, lowest, noise, again)
-
-
-def remainder_of(
-    extended: Fitted, data: Data, before: Repeatability, after: Repeatability
-) -> Remainder:
-    residual = residual_of(data.validate, extended.params)
-    ms = float(np.mean(residual**2))
-    return Remainder(
-        rms=float(np.sqrt(ms)),
-        unit="N",
-        share_of_excess=after.systematic / before.systematic if before.systematic > 0.0 else 0.0,
-        repeats=min(after.repeats / ms, 1.0) if ms > 0.0 else 0.0,
-        shares=arrangement(
-            residual, data.validate.record, data.validate.inputs["direction"], after
-        ),
-        ripple=find_ripple(residual, data.validate),
-    )
 
 
 def series_of(baseline: Fitted, final: Fitted, data: Data) -> tuple[Series, ...]:

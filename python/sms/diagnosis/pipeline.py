@@ -5,28 +5,18 @@ from __future__ import annotations
 import os
 import platform
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from sms import _core
-from sms.diagnosis import wording
-from sms.diagnosis.adequacy.repeatability import Repeatability
-from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.evidence import candidates_of, cause_of, gains, remainder_of, series_of, value_of
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
-from sms.diagnosis.preparation import make_data
-from sms.diagnosis.related_rigs import related_rigs
-from sms.diagnosis.result import Diagnosis, Finding, NotTestable, Related, Verdict
-from sms.diagnosis.selection.forward_selection import (
-    Progress,
-    decide,
-    forward_selection,
-    repeats_of,
-)
-from sms.diagnosis.selection.identifiability import identifiable
-from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.simulated import diagnose_plant
+from sms.callbacks import Progress
+from sms.diagnosis import simulated, strokes, wording
+from sms.diagnosis.adequacy.misdeclared_signals import misdeclared_signals, of_another_machine
+from sms.diagnosis.effects.catalogue import Effect, effects_of
+from sms.diagnosis.hypothesis import Data, baseline_hypothesis
+from sms.diagnosis.preparation import make_data, without_windows
+from sms.diagnosis.result import Diagnosis, Finding
 from sms.errors import InputError
 from sms.io import check as data_check
 from sms.io.records import Record, load_record
@@ -65,25 +55,16 @@ def diagnose(
     if faults:
         return replace(blank, verdict="data-fault", sentence=wording.data_fault(faults))
 
-    if rig.kind != "cylinder":
-        return diagnose_plant(rig, records, blank, rng, progress, empirical)
-
-    progress("fitting the baseline", 0.1)
     data = make_data(rig, records)
-    baseline = fit(baseline_hypothesis(data, effects), data.identify)
-    able, blind = identifiable(baseline, data, effects)
-    before = repeats_of(baseline, data, rng)
-    outcome = forward_selection(baseline, data, able, before.stroke, rng, progress)
-
-    progress("judging what is left", 0.85)
-    after = repeats_of(outcome.final, data, rng)
-    verdict = decide(outcome, before, after)
-    if verdict == "unknown":
-        outcome, after = replace(outcome, final=baseline, named=False), before
-    progress("comparing related rigs", 0.9)
-    related = related_rigs(rig, outcome.final, effects)
-    case = Case(data, baseline, outcome, verdict, blind, before, after, related)
-    return complete(blank, case, rng)
+    if rig.kind == "cylinder":
+        return strokes.complete(blank, strokes.investigate(data, effects, rng, progress), rng)
+    progress("asking whether a signal is declared wrongly", 0.02)
+    asked = declared_wrongly(data, effects)
+    blank = replace(blank, findings=(*findings, *asked))
+    if faults := [f for f in asked if f.severity == "error"]:
+        return replace(blank, verdict="data-fault", sentence=wording.data_fault(faults))
+    case = simulated.investigate(data, effects, rng, progress)
+    return simulated.complete(blank, case, rng, progress, empirical)
 
 
 # ---- reading -------------------------------------------------------------------------------------
@@ -111,7 +92,13 @@ def read_and_check(rig: Rig) -> tuple[list[Record], tuple[Finding, ...]]:
     return records, tuple(findings)
 
 
-# ---- the answer ----------------------------------------------------------------------------------
+def declared_wrongly(data: Data, effects: Sequence[Effect]) -> tuple[Finding, ...]:
+    """What the declared model itself says of the records: a signal that is not what it is called (an error), or
+    another machine (a warning). InputError for a kind of rig that cannot be diagnosed."""
+    if faults := without_windows(data):
+        return faults
+    start = baseline_hypothesis(data, effects).start
+    return misdeclared_signals(data, start) or of_another_machine(data, start)
 
 
 def blank_answer(
@@ -132,44 +119,4 @@ def blank_answer(
         seed=seed,
         versions=versions,
         command=wording.of_command(rig) if rig.kind in KINDS else "",
-    )
-
-
-@dataclass(frozen=True)
-class Case:
-    """Everything the steps brought."""
-
-    data: Data
-    baseline: Fitted
-    outcome: Outcome
-    verdict: Verdict
-    blind: Sequence[NotTestable]
-    before: Repeatability
-    after: Repeatability
-    related: tuple[Related, ...]
-
-
-def complete(blank: Diagnosis, case: Case, rng: np.random.Generator) -> Diagnosis:
-    """The whole answer, in numbers and in wording."""
-    data, baseline, outcome = case.data, case.baseline, case.outcome
-    causes = tuple(cause_of(m, outcome, baseline, data) for m in outcome.groups)
-    floor = float(np.sqrt(case.before.stroke))
-    gain = gains(baseline, outcome.final, data, np.array([case.before.stroke]), rng)
-    left = remainder_of(outcome.final, data, case.before, case.after)
-    start = baseline.hypothesis.start
-    return replace(
-        blank,
-        verdict=case.verdict,
-        sentence=wording.sentence(case.verdict, causes, left),
-        conclusion=wording.conclusion(causes, gain, left, case.blind, case.related),
-        causes=causes,
-        candidates=candidates_of(outcome.rounds),
-        not_testable=tuple(case.blind),
-        gain=gain,
-        remainder=left,
-        noise_floor={"sample": float(np.sqrt(case.before.sample)), "stroke": floor},
-        baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
-        next_experiment=wording.next_experiment(case.verdict, causes, left),
-        related=case.related,
-        series=series_of(baseline, outcome.final, data),
     )

@@ -6,6 +6,7 @@ model is fitted to all records of each, so that a parameter can be followed from
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from sms.diagnosis.effects.catalogue import Effect
@@ -19,7 +20,7 @@ from sms.parameters import PARAMETERS
 from sms.rigs.kinds import kind_of
 
 
-def related_rigs(rig: Rig, extended: Fitted, effects: tuple[Effect, ...]) -> tuple[Related, ...]:
+def related_rigs(rig: Rig, extended: Fitted, effects: Sequence[Effect]) -> tuple[Related, ...]:
     """The causes' parameters on this rig and on each related one; empty without causes or relatives."""
     causes = extended.hypothesis.causes
     if not causes or not rig.related:
@@ -30,9 +31,7 @@ def related_rigs(rig: Rig, extended: Fitted, effects: tuple[Effect, ...]) -> tup
     return tuple(rows)
 
 
-def _row(
-    rig: Rig, differs: str, causes: tuple[Effect, ...], effects: tuple[Effect, ...]
-) -> Related:
+def _row(rig: Rig, differs: str, causes: tuple[Effect, ...], effects: Sequence[Effect]) -> Related:
     kind = kind_of(rig)
     motions = tuple(kind.make_run(rig, load_record(rig, source)) for source in rig.records)
     everything = Runs(rig, motions, noise_of(rig, kind, motions), kind)

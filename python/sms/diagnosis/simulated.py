@@ -1,8 +1,7 @@
-"""The method on records that a simulation is held against: tank, bench, platform.
+"""The method on records that a simulation is held against: tank, bench, platform, and a model of one's own.
 
-The steps are those of pipeline.py and the search is the same; what differs is the unit of judgement (a window simulated
-from its own initial state, not a stroke), the noise (declared), and the question of where an error comes from (hidden
-inputs in the equations, localisation/unknown_inputs.py).
+The unit of judgement is a window, simulated from its own initial state; the noise is declared; and where an error comes
+from is asked of hidden inputs in the equations (localisation/unknown_inputs.py).
 """
 
 from __future__ import annotations
@@ -13,12 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.diagnosis.adequacy.hysteresis import Hysteresis
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
-from sms.diagnosis.adequacy.misdeclared_signals import (
-    misdeclared_signals,
-    of_another_machine,
-)
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency, inconsistency
 from sms.diagnosis.adequacy.residual_energy import (
@@ -36,7 +32,7 @@ from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
 from sms.diagnosis.design.still_hidden import still_hidden
-from sms.diagnosis.effects.catalogue import Effect, effects_of
+from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
 from sms.diagnosis.free_run import free_runs
 from sms.diagnosis.hypothesis import (
@@ -52,23 +48,13 @@ from sms.diagnosis.localisation.equation_error import fed_equations
 from sms.diagnosis.localisation.residual_spectrum import symptoms_of
 from sms.diagnosis.localisation.unknown_inputs import estimate_unknown_inputs
 from sms.diagnosis.other_records import unseen
-from sms.diagnosis.preparation import make_data, without_windows
 from sms.diagnosis.reference import from_reference
-from sms.diagnosis.result import (
-    Cause,
-    Diagnosis,
-    FedEquations,
-    Hidden,
-    NotTestable,
-    ParameterValue,
-    Unexplained,
-    Verdict,
-)
+from sms.diagnosis.remainder import FedEquations, Hidden, Unexplained
+from sms.diagnosis.result import Cause, Diagnosis, NotTestable, ParameterValue, Verdict
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.selection.stepwise import Progress, stepwise_selection
-from sms.diagnosis.wording import data_fault
+from sms.diagnosis.selection.stepwise import stepwise_selection
 from sms.diagnosis.wording_simulated import (
     conclusion,
     nearest_in_words,
@@ -78,11 +64,7 @@ from sms.diagnosis.wording_simulated import (
     still_hidden_in_words,
     words_of_inconsistency,
 )
-from sms.errors import InputError
-from sms.io.records import Record
-from sms.io.rig import Rig
 from sms.parameters import MAPS
-from sms.rigs.kinds import KINDS
 
 
 @dataclass(frozen=True)
@@ -118,34 +100,6 @@ class Case:
         """The same with each equation fed with measured signals; None for a kind without such equations."""
         runs = self.data.identify
         return fed_equations(runs, self.baseline, rng)
-
-
-def diagnose_plant(
-    rig: Rig,
-    records: Sequence[Record],
-    blank: Diagnosis,
-    rng: np.random.Generator,
-    progress: Progress,
-    empirical: bool = False,
-) -> Diagnosis:
-    """From checked records to an answer. InputError for a kind of rig that cannot be simulated against records yet."""
-    if rig.kind not in KINDS:
-        raise InputError(
-            f"{rig.path}: records of a {rig.kind} can be read and checked, but not diagnosed yet; "
-            f"what can be: cylinder, {', '.join(KINDS)}"
-        )
-    data = make_data(rig, records)
-    if faults := without_windows(data):
-        findings = (*blank.findings, *faults)
-        return replace(blank, verdict="data-fault", findings=findings, sentence=data_fault(faults))
-    progress("asking whether a signal is declared wrongly", 0.02)
-    start = baseline_hypothesis(data, effects_of(rig)).start
-    if faults := misdeclared_signals(data, start):
-        findings = (*blank.findings, *faults)
-        return replace(blank, verdict="data-fault", findings=findings, sentence=data_fault(faults))
-    blank = replace(blank, findings=(*blank.findings, *of_another_machine(data, start)))
-    case = investigate(data, effects_of(rig), rng, progress)
-    return complete(blank, case, rng, progress, empirical)
 
 
 def investigate(

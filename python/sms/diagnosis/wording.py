@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from sms.diagnosis.remainder import Remainder
 from sms.diagnosis.result import (
     Cause,
     Finding,
@@ -12,7 +13,6 @@ from sms.diagnosis.result import (
     NotTestable,
     ParameterValue,
     Related,
-    Remainder,
     Verdict,
 )
 from sms.io.rig import Rig

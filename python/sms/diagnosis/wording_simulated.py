@@ -11,17 +11,8 @@ from sms.diagnosis.adequacy.parameter_constancy import Inconstancy
 from sms.diagnosis.adequacy.record_consistency import Inconsistency
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.localisation.signal_functions import alike
-from sms.diagnosis.result import (
-    Cause,
-    FedEquations,
-    Finding,
-    FreeRun,
-    Gain,
-    Hidden,
-    StillHidden,
-    Unexplained,
-    Verdict,
-)
+from sms.diagnosis.remainder import FedEquations, Hidden, Unexplained
+from sms.diagnosis.result import Cause, Finding, FreeRun, Gain, StillHidden, Verdict
 from sms.diagnosis.wording import capital, chosen_again, explained, judged_by_cross_validation
 from sms.parameters import Parameter
 from sms.units_display import format_aligned, format_percent, format_quantity

@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from sms.identification.bench_fit import BenchFit, Progress, fit_bench
+from sms.callbacks import Progress
+from sms.identification.bench_fit import BenchFit, fit_bench
 from sms.identification.bench_records import load_bench
 from sms.io.rig import Rig
 

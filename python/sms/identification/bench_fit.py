@@ -13,13 +13,14 @@ freedom), as is usual for means of measurements that disagree.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sms import _core
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.identification.bench_gain import ChannelGain, gains
 from sms.identification.bench_records import BenchRecords
 from sms.identification.bench_scatter import birge_ratio, record_by_record
@@ -27,8 +28,6 @@ from sms.identification.bench_told import EFFECT, choose, size_of, untold_of
 from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.io.rig import Rig
 from sms.parameters import PARAMETERS
-
-Progress = Callable[[str, float], None]
 
 TOLERANCE = 1e-6  #: relative, of the cost; the initial states are found to no more
 ROUGHLY = 1e-3  #: the same for a fit on the way there

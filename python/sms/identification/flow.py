@@ -8,7 +8,7 @@ is known stands in flow_known.py. The classic law is fitted to the same record f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from sms import OutOfRangeError, _core
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.identification.flow_known import Contribution, Known, budget_of, known_of
 from sms.identification.flow_problem import (
@@ -37,7 +38,6 @@ from sms.identification.profile import Profile, profile
 
 STARTS = ((0.35, 1.2), (0.45, 1.8), (0.1, 0.7))
 """(b, m) from which a fit starts: the cost has a valley along which they replace each other."""
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)

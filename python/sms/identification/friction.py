@@ -7,13 +7,14 @@ source's law (eq. 6.5) and its rivals (eq. 6.1, eq. 6.2, LuGre) are fitted to th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from sms import _core
+from sms.callbacks import Progress
 from sms.errors import InputError
 from sms.identification.friction_fit import EQUATION, LAWS, LawFit, fit_law
 from sms.io.check import check_record, raise_if_unusable
@@ -21,8 +22,6 @@ from sms.io.records import Finding, Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.parameters import PARAMETERS
 from sms.rigs.cylinder import Motion, prepare
-
-Progress = Callable[[str, float], None]
 
 SPACING = 5e-3
 """s: samples closer than this are thinned; the motion is a mean over 0.15 s, they say the same."""

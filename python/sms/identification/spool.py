@@ -16,9 +16,10 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.errors import InputError
 from sms.identification.actuator import BenchResult, wanted_of
-from sms.identification.bench_fit import Progress, fit_bench, start_params
+from sms.identification.bench_fit import fit_bench, start_params
 from sms.identification.bench_records import load_bench
 from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.io.check import check_record, raise_if_unusable

@@ -10,11 +10,10 @@ import can
 import numpy as np
 
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.link.codec import Value, period
 from sms.link.motion import MID_HEIGHT, PlatformMotion
 from sms.link.rig_link import LinkError, RigLink
-
-Progress = Callable[[str, float], None]  #: what is being done, and which share of the whole is
 
 APPROACH = 4.0  #: s; from level to the motion's first sample, and back at the end
 LEVEL_TIME = 20.0  #: s; the longest that a platform may take to come up to mid-height

@@ -10,15 +10,8 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from sms.diagnosis.result import (
-    Cause,
-    Diagnosis,
-    FreeRun,
-    Gain,
-    ParameterValue,
-    Remainder,
-    Unexplained,
-)
+from sms.diagnosis.remainder import Remainder, Unexplained
+from sms.diagnosis.result import Cause, Diagnosis, FreeRun, Gain, ParameterValue
 from sms.diagnosis.wording import INSENSITIVE, arranged
 from sms.diagnosis.wording_simulated import (
     free_run_in_words,

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sms.diagnosis.result import Diagnosis, ErrorCurve, FedEquations, Hidden, Shape
+from sms.diagnosis.remainder import ErrorCurve, FedEquations, Hidden, Shape
+from sms.diagnosis.result import Diagnosis
 from sms.diagnosis.wording_simulated import two_ways
 from sms.report.markup import Scale, bar, esc, section, table
 from sms.report.worth import gain_table

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from sms.diagnosis.result import Diagnosis, FreeRun, Gain, InUse, Remainder, Unexplained
+from sms.diagnosis.remainder import Remainder, Unexplained
+from sms.diagnosis.result import Diagnosis, FreeRun, Gain, InUse
 from sms.diagnosis.wording import ARRANGED
 from sms.diagnosis.wording_simulated import free_run_in_words, worst_free_runs
 from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch, table

@@ -11,7 +11,7 @@ import math
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from itertools import islice
 from multiprocessing.context import BaseContext
@@ -22,6 +22,7 @@ import numpy as np
 import pandas as pd
 
 from sms import StatusError
+from sms.callbacks import Progress
 from sms.cluster import client_of
 from sms.errors import InputError
 from sms.io.write import write_parquet, write_text_atomically
@@ -33,7 +34,6 @@ from sms.scenario.plant import run_scenario
 from sms.scenario.tank import TankRecord, run_tank, tank_findings
 from sms.sweep.plan import Sweep
 
-Progress = Callable[[str, float], None]
 PARTIAL, WHOLE = "sweep.partial.jsonl", "sweep.parquet"
 _AHEAD = 64  # variants handed out before the first has come back
 METRICS: Mapping[str, str] = {

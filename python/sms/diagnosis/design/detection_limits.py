@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.effects.sensitivity import sensitivity_columns
 from sms.diagnosis.hypothesis import Data, baseline_hypothesis
 from sms.diagnosis.selection.excitation import missing_excitation
-from sms.diagnosis.selection.forward_selection import Progress
 from sms.diagnosis.thresholds import DETECTION
 from sms.errors import InputError
 from sms.estimation.kind import Kind

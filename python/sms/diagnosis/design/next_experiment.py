@@ -18,7 +18,8 @@ from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.effects.sensitivity import sensitivity_columns
 from sms.diagnosis.hypothesis import Data, Fitted
-from sms.diagnosis.result import Hidden, NextExperiment, Verdict
+from sms.diagnosis.remainder import Hidden
+from sms.diagnosis.result import NextExperiment, Verdict
 from sms.estimation.kind import Experiment
 from sms.estimation.nuisance import nuisance_at, project
 from sms.estimation.windows import Runs

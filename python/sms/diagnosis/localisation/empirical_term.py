@@ -14,7 +14,8 @@ from sms.diagnosis.evidence import gains_on
 from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
 from sms.diagnosis.localisation.unknown_inputs import with_curve
 from sms.diagnosis.other_records import refitted_on
-from sms.diagnosis.result import Empirical, Gain, Shape
+from sms.diagnosis.remainder import Shape
+from sms.diagnosis.result import Empirical, Gain
 
 
 def empirical_of(

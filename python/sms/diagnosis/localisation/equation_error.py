@@ -26,7 +26,7 @@ from scipy.signal import savgol_coeffs, savgol_filter
 from sms import _core
 from sms.arrays import Array, Index
 from sms.diagnosis.hypothesis import Fitted, free_of
-from sms.diagnosis.result import EquationError, ErrorCurve, FedEquations
+from sms.diagnosis.remainder import EquationError, ErrorCurve, FedEquations
 from sms.diagnosis.thresholds import AVERAGE, DRAWS, ENDS, SMOOTHING, STRETCH, TOLERANCE
 from sms.estimation.block_statistics import sum_by
 from sms.estimation.kind import Equations

@@ -11,7 +11,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import unseen
-from sms.diagnosis.result import Symptom
+from sms.diagnosis.remainder import Symptom
 from sms.diagnosis.thresholds import POWER_SHARE
 from sms.estimation.problem import Window
 from sms.estimation.windows import Runs

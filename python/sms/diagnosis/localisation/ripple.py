@@ -6,7 +6,7 @@ import numpy as np
 from scipy.signal import find_peaks
 
 from sms.arrays import Array
-from sms.diagnosis.result import Ripple
+from sms.diagnosis.remainder import Ripple
 from sms.diagnosis.thresholds import AGREEMENT, PERIODS_IN_TRAVEL, PROMINENCE, SHORTEST_PERIOD
 from sms.estimation.windows import Runs
 

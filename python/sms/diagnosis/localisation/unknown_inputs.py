@@ -28,7 +28,7 @@ from sms.diagnosis.localisation.signal_functions import (
     signals_of,
     through_plant,
 )
-from sms.diagnosis.result import Hidden, Shape
+from sms.diagnosis.remainder import Hidden, Shape
 from sms.diagnosis.thresholds import CURVE_RIDGE, DRAWS, MOST_ROWS
 from sms.estimation.block_statistics import sum_by
 from sms.estimation.discrepancy import KNOTS

@@ -16,13 +16,13 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.diagnosis import preparation, simulated, wording
 from sms.diagnosis.effects import catalogue
 from sms.diagnosis.own.model import Effect, Model
 from sms.diagnosis.own.records import Record, check
 from sms.diagnosis.own.shooting import ShootingProblem, Stretch
 from sms.diagnosis.result import Diagnosis, as_json
-from sms.diagnosis.selection.forward_selection import Progress
 from sms.diagnosis.thresholds import FEWEST_WINDOWS
 from sms.errors import InputError
 from sms.estimation.kind import Kind

@@ -1,36 +1,19 @@
-"""Rounds of the search until nothing more is found, and the verdict on what they brought."""
+"""Forward selection on strokes: rounds until nothing more is found. Rigs that are simulated have stepwise.py."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from sms.diagnosis.adequacy.repeatability import Repeatability, repeatability
+from sms.callbacks import Progress
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import unseen
-from sms.diagnosis.result import Verdict
 from sms.diagnosis.selection.candidates import try_effects
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.validation import Yardstick, ambiguity_group, judge
-from sms.diagnosis.thresholds import MOST_CAUSES, UNKNOWN_CHANCE, UNKNOWN_OF_NOISE, UNKNOWN_SHARE
-
-Progress = Callable[[str, float], None]
-"""Called with what is being done and the share that is done, 0..1."""
-
-
-def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatability:
-    """How much of a model's error on the validate records repeats from stroke to stroke."""
-    v = data.validate
-    return repeatability(
-        residual_of(v, fitted.params),
-        v.record,
-        v.window,
-        v.inputs["extension [m]"],
-        v.inputs["direction"],
-        rng,
-    )
+from sms.diagnosis.thresholds import MOST_CAUSES
 
 
 def forward_selection(
@@ -43,7 +26,7 @@ def forward_selection(
 ) -> Outcome:
     """Until nothing more is found: the best effect joins the model, with those that look alike.
 
-    floor: mean square of what no model of the state explains. Rigs that are simulated have stepwise.py.
+    floor: mean square of what no model of the state explains.
     """
     original = float(np.mean(unseen(baseline, data) ** 2))
     yardstick = Yardstick(original, floor)
@@ -64,17 +47,3 @@ def forward_selection(
         remaining = [e for e in remaining if e.key not in {m.effect.key for m in members}]
     found = [r.members for r in rounds if r.members]
     return Outcome(current, rounds, found)
-
-
-def decide(outcome: Outcome, before: Repeatability, after: Repeatability) -> Verdict:
-    """One of the verdicts, data-fault aside."""
-    least = max(UNKNOWN_OF_NOISE * after.stroke, UNKNOWN_SHARE * before.systematic)
-    repeats = after.repeats > least and after.repeats_p_value < UNKNOWN_CHANCE
-    drifts = after.drift > least and after.drift_p_value < UNKNOWN_CHANCE
-    if repeats or drifts:
-        return "unknown"
-    if not outcome.groups:
-        return "no-evidence"
-    if len(outcome.groups) > 1:
-        return "combination"
-    return "cause" if len(outcome.groups[0]) == 1 else "class"

@@ -15,12 +15,13 @@ cause is taken out again, and must be missed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from sms import _core
 from sms.arrays import Array
+from sms.callbacks import Progress
 from sms.diagnosis.adequacy.residual_energy import (
     ROLES,
     Left,
@@ -57,10 +58,6 @@ from sms.diagnosis.thresholds import (
     TRIED_BY_SLOPE,
 )
 from sms.estimation.least_squares import changed
-
-Progress = Callable[[str, float], None]
-"""Called with what is being done and the share that is done, 0..1."""
-
 
 # ---- one round -------------------------------------------------------------------------------------
 
