@@ -86,7 +86,7 @@ sms::Params<S> random_machine(sms_test::Random& random) {
   p.piston_leakage = between<S>(random, 0.0, 1e-9);
   p.chamber_leakage_lower = between<S>(random, 0.0, 1e-9);
   p.heat_share = random.uniform(0.0, 1.0) < 0.5 ? S(0) : between<S>(random, 0.1, 1.0);
-  p.flow_map_feed_3 = between<S>(random, -0.05, 0.05);
+  p.flow_map_feed_upper_3 = between<S>(random, -0.05, 0.05);
   p.integral_gain = between<S>(random, 0.0, 50.0);
   p.derivative_gain = between<S>(random, 0.0, 1.0);
   return p;

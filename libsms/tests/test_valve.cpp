@@ -1,6 +1,7 @@
 // The valve: spool, orifices, both laws of flow, the measured tables, four edges.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -267,6 +268,37 @@ TEST_CASE("neutral effects are absent to the bit, active ones act") {
   restricted.exhaust_flow_change = -0.2;
   CHECK(sms::valve_flows(restricted, ValveLaw::classic, ratios, 7.0, ports).upper_exhaust ==
         doctest::Approx(0.8 * sms::valve_flows(p, ValveLaw::classic, ratios, 7.0, ports).upper_exhaust));
+}
+
+TEST_CASE("the tables' flow may be off at each of the four edges by itself") {
+  double Params::*const at_knots[][6] = {
+#define EDGE(name)                                                                           \
+  {&Params::flow_map_##name##_1, &Params::flow_map_##name##_2, &Params::flow_map_##name##_3, \
+   &Params::flow_map_##name##_4, &Params::flow_map_##name##_5, &Params::flow_map_##name##_6}
+      EDGE(feed_lower), EDGE(vent_lower), EDGE(feed_upper), EDGE(vent_upper)};
+#undef EDGE
+  const auto in_order = [](const sms::EdgeFlows<double>& flow) {
+    return std::array<double, 4>{flow.supply_lower, flow.lower_exhaust, flow.supply_upper, flow.upper_exhaust};
+  };
+  sms_test::Random random;
+  for (int i = 0; i < sms_test::count; ++i) {
+    const Params exact;
+    Params off;
+    const int edge = int(random.uniform(0.0, 4.0));
+    const double error = random.uniform(-0.1, 0.1);
+    for (double Params::*knot : at_knots[edge]) {
+      off.*knot = error;
+    }
+    const sms::ValvePorts<double> ports = random_ports(random);
+    const double voltage = random.uniform(0.0, 10.0);
+    for (const ValveLaw law : {ValveLaw::iso_0_4_mpa, ValveLaw::iso_0_2_mpa, ValveLaw::classic}) {
+      const auto flow = in_order(sms::valve_flows(off, law, ratios, voltage, ports));
+      const auto table = in_order(sms::valve_flows(exact, law, ratios, voltage, ports));
+      for (int k = 0; k < 4; ++k) {
+        CHECK(flow[k] == doctest::Approx((k == edge ? 1.0 + error : 1.0) * table[k]));
+      }
+    }
+  }
 }
 
 TEST_CASE("a changed dead band shifts the tables without a step") {

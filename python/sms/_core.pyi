@@ -734,100 +734,196 @@ class Params:
     def exponential_friction_rate(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_feed_1(self) -> float:
+    def flow_map_feed_lower_1(self) -> float:
         """
-        relative error of the tables' flow through the port that is fed, at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the lower chamber at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_feed_1.setter
-    def flow_map_feed_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_lower_1.setter
+    def flow_map_feed_lower_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_feed_2(self) -> float:
+    def flow_map_feed_lower_2(self) -> float:
         """
-        relative error of the tables' flow through the port that is fed, at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the lower chamber at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_feed_2.setter
-    def flow_map_feed_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_lower_2.setter
+    def flow_map_feed_lower_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_feed_3(self) -> float:
+    def flow_map_feed_lower_3(self) -> float:
         """
-        relative error of the tables' flow through the port that is fed, at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the lower chamber at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_feed_3.setter
-    def flow_map_feed_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_lower_3.setter
+    def flow_map_feed_lower_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_feed_4(self) -> float:
+    def flow_map_feed_lower_4(self) -> float:
         """
-        relative error of the tables' flow through the port that is fed, at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the lower chamber at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_feed_4.setter
-    def flow_map_feed_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_lower_4.setter
+    def flow_map_feed_lower_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_feed_5(self) -> float:
+    def flow_map_feed_lower_5(self) -> float:
         """
-        relative error of the tables' flow through the port that is fed, at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the lower chamber at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_feed_5.setter
-    def flow_map_feed_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_lower_5.setter
+    def flow_map_feed_lower_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_feed_6(self) -> float:
+    def flow_map_feed_lower_6(self) -> float:
         """
-        relative error of the tables' flow through the port that is fed, at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the lower chamber at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_feed_6.setter
-    def flow_map_feed_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_lower_6.setter
+    def flow_map_feed_lower_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_vent_1(self) -> float:
+    def flow_map_feed_upper_1(self) -> float:
         """
-        relative error of the tables' flow through the port that is vented, at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the upper chamber at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_vent_1.setter
-    def flow_map_vent_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_upper_1.setter
+    def flow_map_feed_upper_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_vent_2(self) -> float:
+    def flow_map_feed_upper_2(self) -> float:
         """
-        relative error of the tables' flow through the port that is vented, at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the upper chamber at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_vent_2.setter
-    def flow_map_vent_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_upper_2.setter
+    def flow_map_feed_upper_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_vent_3(self) -> float:
+    def flow_map_feed_upper_3(self) -> float:
         """
-        relative error of the tables' flow through the port that is vented, at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the upper chamber at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_vent_3.setter
-    def flow_map_vent_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_upper_3.setter
+    def flow_map_feed_upper_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_vent_4(self) -> float:
+    def flow_map_feed_upper_4(self) -> float:
         """
-        relative error of the tables' flow through the port that is vented, at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the upper chamber at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_vent_4.setter
-    def flow_map_vent_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_upper_4.setter
+    def flow_map_feed_upper_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_vent_5(self) -> float:
+    def flow_map_feed_upper_5(self) -> float:
         """
-        relative error of the tables' flow through the port that is vented, at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the upper chamber at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_vent_5.setter
-    def flow_map_vent_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_upper_5.setter
+    def flow_map_feed_upper_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
-    def flow_map_vent_6(self) -> float:
+    def flow_map_feed_upper_6(self) -> float:
         """
-        relative error of the tables' flow through the port that is vented, at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        relative error of the tables' flow into the upper chamber at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
         """
-    @flow_map_vent_6.setter
-    def flow_map_vent_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    @flow_map_feed_upper_6.setter
+    def flow_map_feed_upper_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_lower_1(self) -> float:
+        """
+        relative error of the tables' flow out of the lower chamber at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_lower_1.setter
+    def flow_map_vent_lower_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_lower_2(self) -> float:
+        """
+        relative error of the tables' flow out of the lower chamber at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_lower_2.setter
+    def flow_map_vent_lower_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_lower_3(self) -> float:
+        """
+        relative error of the tables' flow out of the lower chamber at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_lower_3.setter
+    def flow_map_vent_lower_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_lower_4(self) -> float:
+        """
+        relative error of the tables' flow out of the lower chamber at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_lower_4.setter
+    def flow_map_vent_lower_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_lower_5(self) -> float:
+        """
+        relative error of the tables' flow out of the lower chamber at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_lower_5.setter
+    def flow_map_vent_lower_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_lower_6(self) -> float:
+        """
+        relative error of the tables' flow out of the lower chamber at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_lower_6.setter
+    def flow_map_vent_lower_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_upper_1(self) -> float:
+        """
+        relative error of the tables' flow out of the upper chamber at an opening of 0.6 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_upper_1.setter
+    def flow_map_vent_upper_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_upper_2(self) -> float:
+        """
+        relative error of the tables' flow out of the upper chamber at an opening of 0.75 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_upper_2.setter
+    def flow_map_vent_upper_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_upper_3(self) -> float:
+        """
+        relative error of the tables' flow out of the upper chamber at an opening of 0.95 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_upper_3.setter
+    def flow_map_vent_upper_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_upper_4(self) -> float:
+        """
+        relative error of the tables' flow out of the upper chamber at an opening of 1.25 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_upper_4.setter
+    def flow_map_vent_upper_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_upper_5(self) -> float:
+        """
+        relative error of the tables' flow out of the upper chamber at an opening of 1.8 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_upper_5.setter
+    def flow_map_vent_upper_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def flow_map_vent_upper_6(self) -> float:
+        """
+        relative error of the tables' flow out of the upper chamber at an opening of 3.0 V [1]; assumed, a few percent (Tables 5.1 and 5.2)
+        """
+    @flow_map_vent_upper_6.setter
+    def flow_map_vent_upper_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def frame_compliance(self) -> float:

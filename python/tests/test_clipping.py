@@ -106,7 +106,7 @@ def test_clipped_readings_are_compared_with_nothing_and_the_others_judge(
     tmp_path: Path, declared: bool
 ) -> None:
     """A leak is found with its size on records whose pressure sensor ends at 3.4 bar."""
-    leak, top = 3e-9, 3.4e5
+    leak, top = 6e-9, 3.4e5
     path = write_bench(tmp_path, 2, {"piston_leakage": leak})
     for number in range(4):
         change(tmp_path, number, COLUMN, np.minimum(column(tmp_path, number), top))

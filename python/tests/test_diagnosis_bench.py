@@ -248,7 +248,7 @@ def test_friction_and_sensors_may_be_off_as_far_as_the_rig_file_says(tmp_path: P
 
 
 def test_a_leak_past_the_piston_is_named_with_its_size(tmp_path: Path) -> None:
-    leak = 3e-9  # kg/(s Pa)
+    leak = 5e-9  # kg/(s Pa)
     answer = diagnose(write_bench(tmp_path, 2, {"piston_leakage": leak}))
     assert answer.verdict in ("cause", "class")
     (cause,) = answer.causes

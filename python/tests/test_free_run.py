@@ -26,7 +26,7 @@ from sms.report.console import print_diagnosis
 from sms.report.diagnosis import report_html
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
-LEAK = 3e-9
+LEAK = 2e-8
 RANGE = {"extension": 0.4, "chamber_pressure_lower": 5e5, "chamber_pressure_upper": 5e5}
 
 

@@ -128,11 +128,13 @@ def test_a_half_width_in_model_is_that_of_all_its_parameters(
 
 def test_one_parameter_of_a_map_has_a_half_width_of_its_own(tmp_path: Path) -> None:
     with_map = BENCH.replace("[model]", '[model]\nflow_map_uncertainty = "7 %"')
-    one = with_map + "\n[parameters]\nflow_map_feed_2 = { value = 0.1, uncertainty = 0.01 }\n"
-    assert load_rig(bench(tmp_path, one)).declared("flow_map_feed_2") == Declaration(0.1, 0.01)
-    assert load_rig(bench(tmp_path, one)).declared("flow_map_feed_3").uncertainty == pytest.approx(
-        0.07
+    one = with_map + "\n[parameters]\nflow_map_feed_lower_2 = { value = 0.1, uncertainty = 0.01 }\n"
+    assert load_rig(bench(tmp_path, one)).declared("flow_map_feed_lower_2") == Declaration(
+        0.1, 0.01
     )
+    assert load_rig(bench(tmp_path, one)).declared(
+        "flow_map_feed_lower_3"
+    ).uncertainty == pytest.approx(0.07)
 
 
 @pytest.mark.parametrize(("said", "sentence"), [

@@ -10,6 +10,20 @@
 
 namespace sms {
 
+// Where the values belong, ascending; and one over the distance of each knot from the one below.
+template <typename V, int kKnots>
+struct MapKnots {
+  V at[kKnots] = {};
+  V per_span[kKnots] = {};
+
+  constexpr explicit MapKnots(const V (&places)[kKnots]) {
+    for (int i = 0; i < kKnots; ++i) {
+      at[i] = places[i];
+      per_span[i] = i > 0 ? V(1) / (places[i] - places[i - 1]) : V(0);
+    }
+  }
+};
+
 // Between which two knots a place lies, and how far from the lower one to the upper one, 0 to 1.
 template <typename S>
 struct MapPlace {
@@ -18,13 +32,12 @@ struct MapPlace {
 };
 
 template <typename S, int kKnots>
-MapPlace<S> map_place(const ValueOf<S> (&knot)[kKnots], const S& x) {
+MapPlace<S> map_place(const MapKnots<ValueOf<S>, kKnots>& knots, const S& x) {
   int above = 1;
-  while (above < kKnots - 1 && x > S(knot[above])) {
+  while (above < kKnots - 1 && x > S(knots.at[above])) {
     ++above;
   }
-  const S span(knot[above] - knot[above - 1]);
-  return {above, limited<S>((x - S(knot[above - 1])) / span, S(0), S(1))};
+  return {above, limited<S>((x - S(knots.at[above - 1])) * S(knots.per_span[above]), S(0), S(1))};
 }
 
 template <typename S, int kKnots>

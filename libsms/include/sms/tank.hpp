@@ -68,10 +68,10 @@ void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) 
   t.space.volume += tube_volume(p);
   t.feed = t.vent = S(0);
   if (opening >= S(0)) {
-    t.feed = gain * (S(1) + feed_map_error(p, flow_map_place<S>(opening))) *
+    t.feed = gain * flow_map(p, Edge::feed_lower, flow_map_place<S>(opening)) *
              edge_flow(p, tank.laws.valve, edges.feed, edges.area, supply, t.air);
   } else {
-    t.vent = gain * (S(1) + p.exhaust_flow_change) * (S(1) + vent_map_error(p, flow_map_place<S>(abs(opening)))) *
+    t.vent = gain * (S(1) + p.exhaust_flow_change) * flow_map(p, Edge::vent_lower, flow_map_place<S>(abs(opening))) *
              edge_flow(p, tank.laws.valve, edges.vent, edges.area, t.air, outside);
   }
   if (!is_absent(p.tube_length)) {

@@ -24,8 +24,8 @@
 // the flow over |V - centre|. On a cylinder they are multiplied by mass_flow_gain, 1.5 to 1.65; on the tank where they
 // were measured it is 1. The classic law has its discharge coefficient instead.
 //
-// The tables' flow is not exact. flow_map_feed_1.. and flow_map_vent_1.. are its relative error at some openings, linear
-// in between and constant beyond; zero leaves every result unchanged.
+// The tables' flow is not exact, and no two of the four metering edges are alike: flow_map_feed_lower_1.., vent_lower,
+// feed_upper and vent_upper are its relative error over each at some openings (map_error.hpp).
 //
 // Effects, absent until data switches them on: valve_leakage (a labyrinth past the lands on all four edges: the ISO law
 // with b = 0 and m = 2, sqrt(p1^2 - p2^2)), dead_band_width, exhaust_restriction.
@@ -122,24 +122,26 @@ OpenEdges<S> open_edges(const Params<S>& p, ValveLaw law, const HeatRatios<S>& r
 template <typename S>
 MapPlace<S> flow_map_place(const S& opening) {
   using V = ValueOf<S>;
-  constexpr V knot[] = {V(0.6), V(0.75), V(0.95), V(1.25), V(1.8), V(3.0)};  // V
-  return map_place<S>(knot, opening);
+  static constexpr MapKnots<V, 6> knots({V(0.6), V(0.75), V(0.95), V(1.25), V(1.8), V(3.0)});  // V
+  return map_place<S>(knots, opening);
 }
 
-template <typename S>
-S feed_map_error(const Params<S>& p, const MapPlace<S>& place) {
-  using P = Params<S>;
-  static constexpr S P::*at_knot[] = {&P::flow_map_feed_1, &P::flow_map_feed_2, &P::flow_map_feed_3,
-                                      &P::flow_map_feed_4, &P::flow_map_feed_5, &P::flow_map_feed_6};
-  return map_error(p, at_knot, place);
-}
+enum class Edge { feed_lower, vent_lower, feed_upper, vent_upper };
 
+// Flow over an edge over that of the tables: 1 and its relative error there.
 template <typename S>
-S vent_map_error(const Params<S>& p, const MapPlace<S>& place) {
+S flow_map(const Params<S>& p, Edge edge, const MapPlace<S>& place) {
   using P = Params<S>;
-  static constexpr S P::*at_knot[] = {&P::flow_map_vent_1, &P::flow_map_vent_2, &P::flow_map_vent_3,
-                                      &P::flow_map_vent_4, &P::flow_map_vent_5, &P::flow_map_vent_6};
-  return map_error(p, at_knot, place);
+  static constexpr S P::*error[][6] = {
+      {&P::flow_map_feed_lower_1, &P::flow_map_feed_lower_2, &P::flow_map_feed_lower_3, &P::flow_map_feed_lower_4,
+       &P::flow_map_feed_lower_5, &P::flow_map_feed_lower_6},
+      {&P::flow_map_vent_lower_1, &P::flow_map_vent_lower_2, &P::flow_map_vent_lower_3, &P::flow_map_vent_lower_4,
+       &P::flow_map_vent_lower_5, &P::flow_map_vent_lower_6},
+      {&P::flow_map_feed_upper_1, &P::flow_map_feed_upper_2, &P::flow_map_feed_upper_3, &P::flow_map_feed_upper_4,
+       &P::flow_map_feed_upper_5, &P::flow_map_feed_upper_6},
+      {&P::flow_map_vent_upper_1, &P::flow_map_vent_upper_2, &P::flow_map_vent_upper_3, &P::flow_map_vent_upper_4,
+       &P::flow_map_vent_upper_5, &P::flow_map_vent_upper_6}};
+  return S(1) + map_error(p, error[int(edge)], place);
 }
 
 // ---- flow ----
@@ -194,14 +196,17 @@ EdgeFlows<S> valve_flows(const Params<S>& p, ValveLaw law, const HeatRatios<S>& 
   const OpenEdges<S> edges = open_edges(p, law, ratios, opening);
   const S gain = law == ValveLaw::classic ? S(1) : p.mass_flow_gain;
   const MapPlace<S> place = flow_map_place<S>(abs(opening));
-  const S feed_gain = gain * (S(1) + feed_map_error(p, place));
-  const S vent_gain = gain * (S(1) + p.exhaust_flow_change) * (S(1) + vent_map_error(p, place));
+  const S vent_gain = gain * (S(1) + p.exhaust_flow_change);
   if (opening >= S(0)) {
-    flow.supply_lower += feed_gain * edge_flow(p, law, edges.feed, edges.area, ports.supply, ports.lower);
-    flow.upper_exhaust += vent_gain * edge_flow(p, law, edges.vent, edges.area, ports.upper, ports.exhaust);
+    flow.supply_lower += gain * flow_map(p, Edge::feed_lower, place) *
+                         edge_flow(p, law, edges.feed, edges.area, ports.supply, ports.lower);
+    flow.upper_exhaust += vent_gain * flow_map(p, Edge::vent_upper, place) *
+                          edge_flow(p, law, edges.vent, edges.area, ports.upper, ports.exhaust);
   } else {
-    flow.supply_upper += feed_gain * edge_flow(p, law, edges.feed, edges.area, ports.supply, ports.upper);
-    flow.lower_exhaust += vent_gain * edge_flow(p, law, edges.vent, edges.area, ports.lower, ports.exhaust);
+    flow.supply_upper += gain * flow_map(p, Edge::feed_upper, place) *
+                         edge_flow(p, law, edges.feed, edges.area, ports.supply, ports.upper);
+    flow.lower_exhaust += vent_gain * flow_map(p, Edge::vent_lower, place) *
+                          edge_flow(p, law, edges.vent, edges.area, ports.lower, ports.exhaust);
   }
   return flow;
 }

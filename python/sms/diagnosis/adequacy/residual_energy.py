@@ -58,10 +58,9 @@ class Left:
     @property
     def by_window(self) -> Array:
         """(windows,): what counts in comparisons, on the fitted records and then the others: the sum over the channels
-        of the logarithms, the noise of a sample added; where the unit is absolute, of the energies themselves, which
-        make a likelihood."""
-        energy = np.vstack([self.identify, self.validate])
-        return np.asarray((energy if self.absolute else np.log1p(energy)).sum(axis=1))
+        of the logarithms, the unit added. That is the likelihood of Student's t, in which a window that no model
+        follows has no more to say than any other."""
+        return np.asarray(np.log1p(np.vstack([self.identify, self.validate])).sum(axis=1))
 
     def energy(self, role: Role) -> Array:
         """(windows, channels)"""
