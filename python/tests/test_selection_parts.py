@@ -60,3 +60,30 @@ def test_what_is_no_worse_than_the_last_cause_shares_its_class(
     # c is worse, z was not accepted; of the others the best two.
     assert [t.effect for t in members] == ["a", "f", "e"]
     assert all(t.support == pytest.approx(1.0 / 3.0) for t in members)
+
+
+@pytest.mark.parametrize(
+    ("worse_by", "class_of"),
+    [
+        ({"b": 2.5, "c": 2.5}, "abc"),  # three, none worse by three standard errors
+        ({"b": 2.5, "c": 3.5}, "ab"),
+        ({"b": 2.5, "c": 1.0, "d": 2.5, "e": 1.5}, "ace"),  # a crowd: two standard errors
+        ({"b": 1.0, "c": 1.0, "d": 1.0, "e": 1.0}, "abcde"),  # nothing tells these apart
+    ],
+)
+def test_of_a_crowd_those_stay_that_are_hardly_worse(
+    worse_by: dict[str, float], class_of: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_worse(trial: Trial, best: Trial, data: Any, standard_errors: float = 3.0) -> bool:
+        return worse_by[trial.effect.key] <= standard_errors
+
+    monkeypatch.setattr(judgement, "_no_worse", no_worse)
+    monkeypatch.setattr(judgement, "_similarity", lambda one, other, current, data: 0.95)
+    accepted = []
+    for name in ("a", *worse_by):
+        effect = SimpleNamespace(key=name, id=name, parameters=(name,))
+        trial = Trial(cast(Any, effect), cast(Any, None), 0.0, np.zeros(1))
+        trial.lower = 10.0 - worse_by.get(name, 0.0)
+        accepted.append(trial)
+    members = judgement.alike(accepted, cast(Any, None), cast(Any, None))
+    assert "".join(sorted(m.effect.id for m in members)) == class_of

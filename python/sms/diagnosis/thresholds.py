@@ -52,6 +52,8 @@ WORTH_OF_NOISE = 0.02
 TELLS_APART = 3.0
 """Standard errors of the difference of two rivals, over windows, from which the worse is out. Convention: three sigma.
 """
+TELLS_APART_IN_A_CROWD = 2.0
+"""The same where a class would have more members than an answer should (MOST_MEMBERS). Convention: 95 percent."""
 
 # ---- Forward selection and backward elimination ----------------------------------------------------
 

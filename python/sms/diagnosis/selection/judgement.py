@@ -24,6 +24,7 @@ from sms.diagnosis.thresholds import (
     MOST_MEMBERS,
     SIGNIFICANT,
     TELLS_APART,
+    TELLS_APART_IN_A_CROWD,
     TWINS,
 )
 from sms.estimation.block_statistics import interval, resampled
@@ -186,13 +187,12 @@ def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> lis
 
 def alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
     """The first of them, and those whose predictions change alike and are no worse."""
-    best = accepted[0]
-    members = [best]
-    for trial in accepted[1:]:
-        cosine = _similarity(best, trial, current, data)
-        if cosine > TWINS and _no_worse(trial, best, data):
-            members.append(trial)
-    members = _plainest(members)
+    best, *others = accepted
+    twins = [t for t in others if _similarity(best, t, current, data) > TWINS]
+    members = _plainest([best, *(t for t in twins if _no_worse(t, best, data))])
+    if len(members) > MOST_MEMBERS:
+        surely = (t for t in twins if _no_worse(t, best, data, TELLS_APART_IN_A_CROWD))
+        members = _plainest([best, *surely])
     for trial in accepted:
         _similarity(members[0], trial, current, data)
         trial.support = 1.0 / len(members)
@@ -212,11 +212,11 @@ def with_substitutes(last: Round, data: Data) -> Round:
     return Round(last.trials, members)
 
 
-def _no_worse(trial: Trial, best: Trial, data: Data) -> bool:
+def _no_worse(trial: Trial, best: Trial, data: Data, standard_errors: float = TELLS_APART) -> bool:
     """Whether what it leaves, window by window, is not significantly more."""
     worse = Left.by(trial.fitted, data).by_window - Left.by(best.fitted, data).by_window
     error = float(np.std(worse) * np.sqrt(len(worse)))
-    return float(worse.sum()) <= TELLS_APART * error
+    return float(worse.sum()) <= standard_errors * error
 
 
 def _similarity(one: Trial, other: Trial, current: Fitted, data: Data) -> float:
