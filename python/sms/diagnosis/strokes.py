@@ -25,7 +25,7 @@ from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.forward_selection import forward_selection
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.thresholds import UNKNOWN_CHANCE, UNKNOWN_OF_NOISE, UNKNOWN_SHARE
+from sms.diagnosis.thresholds import LEAST_SHARE, UNKNOWN_CHANCE, UNKNOWN_OF_NOISE
 
 
 @dataclass(frozen=True)
@@ -75,8 +75,8 @@ def repeats_of(fitted: Fitted, data: Data, rng: np.random.Generator) -> Repeatab
 
 
 def decide(outcome: Outcome, before: Repeatability, after: Repeatability) -> Verdict:
-    """One of the verdicts, data-fault aside."""
-    least = max(UNKNOWN_OF_NOISE * after.stroke, UNKNOWN_SHARE * before.systematic)
+    """One of the verdicts, data-fault aside: causes are named where together they take most of what is systematic."""
+    least = max(UNKNOWN_OF_NOISE * after.stroke, (1.0 - LEAST_SHARE) * before.systematic)
     repeats = after.repeats > least and after.repeats_p_value < UNKNOWN_CHANCE
     drifts = after.drift > least and after.drift_p_value < UNKNOWN_CHANCE
     if repeats or drifts:

@@ -59,8 +59,6 @@ TELLS_APART_IN_A_CROWD = 2.0
 
 MOST_CAUSES = 4
 """More are not named. Judgement: with so many terms something always fits."""
-UNKNOWN_SHARE = 0.2
-"""Of the systematic part of the baseline's error: with more left, the verdict is unknown on a cylinder. Judgement."""
 UNKNOWN_OF_NOISE = 0.05
 """Least systematic error, as a share of the noise floor's square, for the verdict unknown. Judgement."""
 UNKNOWN_CHANCE = 0.005
