@@ -14,6 +14,7 @@ from sms.arrays import Array
 from sms.estimation.discrepancy import KNOTS, Discrepancy, Whitened
 from sms.estimation.least_squares import Free, fit_windows
 from sms.estimation.nuisance import Joint, Nuisance, pulls
+from sms.estimation.variance_components import most_likely
 
 from validation.random_cases import draw
 
@@ -151,3 +152,21 @@ def test_an_omitted_parameter_leaves_the_marginal_of_what_is_known_of_the_others
     assert precision[1] == pytest.approx(np.zeros(4))  # nothing is known of x
     alone = pulls(["a", "x"], known)
     assert np.diag(alone) == pytest.approx([1.0 / known["a"], 0.0])
+
+
+def test_standard_deviations_of_random_effects_are_recovered() -> None:
+    """Two groups that are there and one that is not, over sets of data that share nothing but these."""
+    random = draw("random effects")
+    truth, each, sets, rows = np.array([0.5, 3.0, 0.0]), 10, 40, 60
+    group = np.repeat(np.arange(3), each)
+    columns = random.normal(size=(sets, rows, len(group)))
+    effects = truth[group] * random.normal(size=(sets, len(group)))
+    data = np.einsum("sij,sj->si", columns, effects) + random.normal(size=(sets, rows))
+    products = np.einsum("sij,sik->sjk", columns, columns)
+    score = np.einsum("sij,si->sj", columns, data)
+    start, least = np.ones(3), np.full(3, 1e-3)
+    found = most_likely(products, score, group, start, least, 60)
+    assert found[:2] == pytest.approx(
+        truth[:2], rel=0.2
+    )  # of 400 each: 3.5 % is one standard error
+    assert found[2] < 0.1  # what noise alone looks like: 0.03

@@ -9,8 +9,8 @@ residual of a window has the covariance
 
 in units of the noise. Generalised least squares with V asks of a parameter what a wandering input cannot do as well: a
 standard error grows where the discrepancy can imitate it, and no parameter is driven to its bound by a friction or a
-flow that is a little off. The tau come from the data, by maximum marginal likelihood (fixed point of
-MacKay, 1992); of an equation that is right they go to nothing.
+flow that is a little off. The tau come from the data, by maximum marginal likelihood (variance_components.py); of an
+equation that is right they go to nothing.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array
 from sms.estimation.problem import Problem, Window
+from sms.estimation.variance_components import most_likely
 
 KNOTS = 21
 """Knots per window of 1 s, 50 ms apart. Run time: the noise hides anything faster."""
@@ -83,17 +84,10 @@ class Discrepancy:
         """With the standard deviations under which the residual (rows,) is most likely."""
         equations = len(self.tau)
         least = self.moving(LEAST * np.sqrt(len(self.rows)))
-        score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])[:, :, None]
-        tau = np.maximum(self.tau, 30.0 * least)
-        for _ in range(ITERATIONS):
-            d = self._of_columns(tau)
-            inner = np.eye(len(d)) + d[:, None] * self.products * d
-            covariance = np.linalg.inv(inner)  # of the inputs, in units of tau
-            mean = (covariance @ (d[:, None] * score))[:, :, 0]
-            spread = np.einsum("wii->wi", covariance)
-            squares = (mean**2).sum(axis=0).reshape(equations, -1).sum(axis=1)
-            told = (1.0 - spread).sum(axis=0).reshape(equations, -1).sum(axis=1)
-            tau = np.maximum(tau * np.sqrt(squares / np.maximum(told, 1e-12)), least)
+        score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])
+        group = np.repeat(np.arange(equations), self.inputs.shape[1] // max(equations, 1))
+        start = np.maximum(self.tau, 30.0 * least)
+        tau = most_likely(self.products, score, group, start, least, ITERATIONS)
         return replace(self, tau=tau)
 
     @cached_property

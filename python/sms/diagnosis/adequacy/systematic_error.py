@@ -4,7 +4,7 @@ A random input of each equation (estimation/discrepancy.py) averages out over a 
 of a flow does not: it is the same wherever the signals are, and an estimate is off by what of it the parameter can
 imitate. So each equation may also have an unknown function of each signal (localisation/signal_functions.py): a normal
 process along it that bends over half the signal's range, with the standard deviation under which the residual is most
-likely (fixed point of MacKay, 1992). To first order that gives the estimates with these functions beside the
+likely (estimation/variance_components.py). To first order that gives the estimates with these functions beside the
 parameters: a covariance, and how far the estimates would move. The stated variance is the sum of that covariance and of
 the square of the move.
 """
@@ -30,6 +30,7 @@ from sms.diagnosis.localisation.unknown_inputs import thinned
 from sms.diagnosis.thresholds import BENDS
 from sms.estimation.discrepancy import Discrepancy
 from sms.estimation.nuisance import Nuisance
+from sms.estimation.variance_components import most_likely
 from sms.estimation.windows import Runs
 
 ITERATIONS = 40
@@ -137,17 +138,10 @@ class Systematic:
         basis, _ = np.linalg.qr(jacobian)
         off = functions - basis @ (basis.T @ functions)
         products, score = off.T @ off / noise, off.T @ residual / noise
-        groups = int(group.max()) + 1
         moved = np.sqrt(np.bincount(group, np.diag(products)) / np.bincount(group))
         unit = 1.0 / np.maximum(moved, 1e-300)
         sigma = unit * float(np.linalg.norm(residual)) / np.sqrt(noise * len(group))
-        for _ in range(ITERATIONS):
-            d = sigma[group]
-            spread = np.linalg.inv(np.eye(len(d)) + d[:, None] * products * d)
-            mean = spread @ (d * score)
-            told = np.bincount(group, 1.0 - np.diag(spread), groups)
-            squares = np.bincount(group, mean**2, groups)
-            sigma = np.maximum(sigma * np.sqrt(squares / np.maximum(told, 1e-12)), LEAST * unit)
+        sigma = most_likely(products[None], score[None], group, sigma, LEAST * unit, ITERATIONS)
         d = sigma[group]
         together = np.hstack([jacobian, functions * d])
         information = together.T @ together
