@@ -11,10 +11,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from sms import Params, _core, extensions_of, simulate_bench, simulate_platform
-from sms.io import write_record
+from sms.diagnosis.effects.catalogue import effects_of
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
+from sms.diagnosis.preparation import make_data
+from sms.io import load_rig, write_record
+from sms.io.records import load_record
 
 Array = NDArray[np.float64]
 
+LEAK = 1e-8
+"""kg/(s Pa), past the piston of the bench whose diagnosis several tests read (conftest.py)."""
 NOISE = {"extension": 7e-5, "chamber_pressure_lower": 300.0, "chamber_pressure_upper": 300.0}
 LENGTH = 4.0
 EVERY = 10
@@ -103,6 +109,13 @@ def write_bench(
         text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
     (folder / "rig.toml").write_text(text)
     return folder / "rig.toml"
+
+
+def fitted_baseline(path: Path) -> tuple[Fitted, Data]:
+    """What may move in the model of a rig file before any cause, fitted, and the records by role."""
+    rig = load_rig(path)
+    data = make_data(rig, [load_record(rig, source) for source in rig.records])
+    return fit(baseline_hypothesis(data, effects_of(rig)), data.identify), data
 
 
 # ---- platform ------------------------------------------------------------------------------------

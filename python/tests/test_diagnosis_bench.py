@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from plant_support import write_bench
+from plant_support import LEAK, fitted_baseline, write_bench
 from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
+from sms.diagnosis.adequacy.residual_energy import Left, energies, excess, small, tolerated
 from sms.diagnosis.effects.catalogue import Effect, catalogue
 from sms.diagnosis.localisation.signal_functions import hats
 from sms.diagnosis.localisation.unknown_inputs import confirmed
+from sms.diagnosis.other_records import unseen
 from sms.diagnosis.selection.score_test import score_tests
 from sms.estimation.least_squares import Free, fit_windows
 from sms.estimation.nuisance import Nuisance, project
@@ -214,9 +216,9 @@ def test_a_flow_map_may_be_off_as_far_as_the_rig_file_says(tmp_path: Path) -> No
     )
     text = path.read_text()
     path.write_text(text + '\n[model]\nflow_map_uncertainty = "0 %"\n')
-    exact = diagnose(path)
-    assert exact.verdict != "no-evidence"
-    assert not set(FLOW_MAP) & {p.name for p in exact.baseline}
+    exact, data = fitted_baseline(path)
+    assert not small(Left.by(exact, data), tolerated(exact, data))
+    assert not set(FLOW_MAP) & set(exact.hypothesis.free)
     path.write_text(text + '\n[model]\nflow_map_uncertainty = "12 %"\n')
     wide = diagnose(path)
     assert wide.verdict == "no-evidence"
@@ -230,26 +232,26 @@ def test_friction_and_sensors_may_be_off_as_far_as_the_rig_file_says(tmp_path: P
     path = write_bench(tmp_path, 6, off)
     text = path.read_text()
 
-    def with_half_widths(friction: str, line: str) -> Diagnosis:
+    def declare(friction: str, line: str) -> None:
         path.write_text(
             f'{text}\n[model]\nfriction_map_uncertainty = "{friction}"\nsensor_linearity = "{line}"\n'
         )
-        return diagnose(path)
 
-    exact = with_half_widths("0 %", "0 %")
-    assert exact.verdict != "no-evidence"
-    assert not {*FRICTION_MAP, *LINEARITY} & {p.name for p in exact.baseline}
-    wide = with_half_widths("12 %", "1 %")
+    declare("0 %", "0 %")
+    exact, data = fitted_baseline(path)
+    assert not small(Left.by(exact, data), tolerated(exact, data))
+    assert not {*FRICTION_MAP, *LINEARITY} & set(exact.hypothesis.free)
+    declare("12 %", "1 %")
+    wide = diagnose(path)
     assert wide.verdict == "no-evidence"
     assert {p.name for p in wide.baseline} >= {*FRICTION_MAP, *OF_BENCH}
-    for told, untold in zip(wide.gain, exact.gain, strict=True):  # with all that was fitted held
-        beyond = [max(g.baseline_rms**2 - g.noise_floor**2, 0.0) for g in (told, untold)]
-        assert beyond[0] < 0.1 * beyond[1]
+    told, again = fitted_baseline(path)  # with all that was fitted held
+    beyond = excess(energies(again.validate, unseen(told, again)))
+    assert beyond < 0.1 * excess(energies(data.validate, unseen(exact, data)))
 
 
-def test_a_leak_past_the_piston_is_named_with_its_size(tmp_path: Path) -> None:
-    leak = 5e-9  # kg/(s Pa)
-    answer = diagnose(write_bench(tmp_path, 2, {"piston_leakage": leak}))
+def test_a_leak_past_the_piston_is_named_with_its_size(leaking_bench: Diagnosis) -> None:
+    answer, leak = leaking_bench, LEAK
     assert answer.verdict in ("cause", "class")
     (cause,) = answer.causes
     assert "piston_leakage" in cause.members and len(cause.members) <= 3

@@ -9,31 +9,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from plant_support import EVERY, NOISE, write_bench
+from plant_support import EVERY, LEAK, NOISE, fitted_baseline, write_bench
 from rich.console import Console
 from sms import Params, _core, simulate_bench
-from sms.diagnosis import diagnose
-from sms.diagnosis.effects.catalogue import effects_of
+from sms.diagnosis import Diagnosis
 from sms.diagnosis.free_run import free_runs
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
-from sms.diagnosis.preparation import make_data
+from sms.diagnosis.hypothesis import Fitted
 from sms.diagnosis.result import FreeRun, as_json
 from sms.diagnosis.wording_simulated import free_run_in_words, worst_free_runs
 from sms.estimation.least_squares import changed
-from sms.io import load_rig
-from sms.io.records import load_record
 from sms.report.console import print_diagnosis
 from sms.report.diagnosis import report_html
 
 pytestmark = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
-LEAK = 2e-8
 RANGE = {"extension": 0.4, "chamber_pressure_lower": 5e5, "chamber_pressure_upper": 5e5}
-
-
-def fitted_baseline(path: Path) -> tuple[Fitted, Data]:
-    rig = load_rig(path)
-    data = make_data(rig, [load_record(rig, source) for source in rig.records])
-    return fit(baseline_hypothesis(data, effects_of(rig)), data.identify), data
 
 
 def with_values(fitted: Fitted, **values: float) -> Fitted:
@@ -75,10 +64,9 @@ def test_it_is_the_error_of_one_simulation_from_beginning_to_end(tmp_path: Path)
 
 
 def test_over_a_whole_record_an_error_grows_and_the_right_model_has_the_noise_only(
-    tmp_path: Path,
+    leaking_bench: Diagnosis,
 ) -> None:
-    path = write_bench(tmp_path, 2, {"piston_leakage": LEAK})
-    answer = diagnose(path)
+    answer = leaking_bench
     assert answer.verdict in ("cause", "class")
     runs, windows = answer.free_run, {(g.record, g.signal): g for g in answer.gain}
     assert {(r.record, r.signal) for r in runs} == set(windows)

@@ -55,7 +55,7 @@ def fitted_to(
 
 def test_a_leak_that_opens_at_a_pressure_is_another_law(tmp_path: Path) -> None:
     leak = "fitting_leakage of lower"
-    data, fitted = fitted_to(tmp_path, "bench", "check_valve_leak", 5, leak, multiple=1.0)
+    data, fitted = fitted_to(tmp_path, "bench", "check_valve_leak", 5, leak, multiple=2.0)
     law = inconstancy(fitted, fitted.hypothesis.causes[0], data)
     assert law is not None
     assert law.signal.startswith("chamber_pressure")

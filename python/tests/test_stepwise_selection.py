@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from plant_support import write_bench
 from sms import _core
-from sms.diagnosis import diagnose
+from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.adequacy.residual_energy import (
     Left,
     energies,
@@ -96,8 +96,8 @@ def test_the_flow_tables_may_be_off_by_a_few_percent_and_no_more(tmp_path: Path)
         assert (low, high) == pytest.approx((-0.09, 0.09))
 
 
-def test_the_answer_says_what_is_left_beside_the_cause(tmp_path: Path) -> None:
-    answer = diagnose(write_bench(tmp_path, 2, {"piston_leakage": 1e-8}))
+def test_the_answer_says_what_is_left_beside_the_cause(leaking_bench: Diagnosis) -> None:
+    answer = leaking_bench
     (cause,) = answer.causes
     assert 0.5 < cause.share_low <= cause.share <= cause.share_high <= 1.0
     left = answer.remainder

@@ -284,8 +284,6 @@ def _hidden(fitted: Fitted, data: Data, excess: LackOfFit, rng: np.random.Genera
     rows = len(runs.channel) / len(runs.channels)
     chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
     free = nuisance_of(fitted)
-    for (
-        name
-    ) in MAPS:  # what is missing is looked for beside the maps, not in what they may be off by
-        free = free.without(name)
+    # What is missing is looked for beside the maps, not in what they may be off by.
+    free = free.without(*MAPS)
     return estimate_unknown_inputs(runs, free, fitted.fit.residual, fitted.params, chi_square, rng)
