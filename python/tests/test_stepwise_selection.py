@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from plant_support import write_bench
+from plant_support import fitted_baseline, write_bench
 from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.adequacy.residual_energy import (
     Left,
+    departs,
     energies,
     excess,
     nothing_left,
@@ -71,6 +72,23 @@ def test_a_healthy_bench_leaves_hardly_more_than_noise_and_a_leaking_one_more(
             here, tolerated(baseline, data)
         )  # either is little beside what is declared uncertain
     assert left == [True, False]
+
+
+def test_a_leak_that_the_maps_could_make_up_for_is_named_since_they_would_be_far_off(
+    tmp_path: Path,
+) -> None:
+    far, leak = [], 3e-9
+    for seed, effects in ((1, {}), (2, {"piston_leakage": leak})):
+        (tmp_path / str(seed)).mkdir()
+        path = write_bench(tmp_path / str(seed), seed, effects)
+        baseline, data = fitted_baseline(path)
+        assert nothing_left(Left.by(baseline, data), data)
+        far.append(departs(baseline))
+    assert far == [False, True]
+    (cause,) = diagnose(path).causes
+    (size, *_) = cause.parameters
+    assert cause.effect == "piston_leakage"
+    assert size.value == pytest.approx(leak, abs=3.0 * size.standard_error)
 
 
 def test_an_excerpt_leaves_what_its_windows_leave_in_the_whole(tmp_path: Path) -> None:

@@ -87,6 +87,10 @@ LEAST_SHARE = 0.5
 NEARLY_ALL = 0.85
 """The same where what is left is within what is tolerated. Judgement: half of so small an error is imitated
 by many effects, nearly all of it hardly by any."""
+DEPARTS = 1e-3
+"""Chance from which on the numbers that are known lie too far from what is declared for a healthy machine, however
+little is left. Convention: 0.1 percent.
+"""
 TOLERATED = 0.1
 """Of the error that all declared uncertainties together would make: what a model may leave. Judgement: a description
 whose numbers are known to a few percent, and which then fits ten times better than that, is not called wrong.

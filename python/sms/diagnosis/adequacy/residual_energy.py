@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from scipy.stats import chi2
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, cost_of_departure
+from sms.diagnosis.hypothesis import Data, Fitted, cost_of_departure, weights_of
 from sms.diagnosis.other_records import refitted
-from sms.diagnosis.thresholds import LEAST_OF_NOISE, TOLERATED
+from sms.diagnosis.thresholds import DEPARTS, LEAST_OF_NOISE, TOLERATED
 from sms.estimation.windows import Runs
 
 
@@ -130,6 +131,22 @@ def nothing_left(left: Left, data: Data) -> bool:
     total, worst = data.identify.kind.practically_significant
     beyond = 0.5 * (left.identify.mean(axis=0) + left.validate.mean(axis=0)) - 1.0
     return float(beyond.mean()) < 2.0 * total and float(beyond.max()) < 2.0 * worst
+
+
+def departs(fitted: Fitted) -> bool:
+    """Whether what is known had to move farther from what is declared than chance has it, for a model to fit so well.
+
+    Chi-square, with as many degrees of freedom as these records tell of what is known. A spoilt machine may be
+    described by maps that are at the end of what may be wrong with them, and then little is left.
+    """
+    h, names = fitted.hypothesis, list(fitted.hypothesis.free)
+    jacobian, pull = fitted.fit.jacobian.astype(np.float64), weights_of(h, names)
+    information, declared = jacobian.T @ jacobian, pull.T @ pull
+    scale = np.sqrt(np.maximum(np.diag(information + declared), 1e-300))
+    information, declared = (m / np.outer(scale, scale) for m in (information, declared))
+    told = np.trace(np.linalg.pinv(information + declared, hermitian=True) @ information)
+    by_records_alone = sum(n not in h.known for n in names)
+    return bool(chi2.sf(cost_of_departure(fitted), max(told - by_records_alone, 1.0)) < DEPARTS)
 
 
 def differs_when_well(data: Data) -> Array:

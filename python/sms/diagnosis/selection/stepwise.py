@@ -25,6 +25,7 @@ from sms.callbacks import Progress
 from sms.diagnosis.adequacy.residual_energy import (
     ROLES,
     Left,
+    departs,
     logarithms,
     nothing_left,
     small,
@@ -168,11 +169,11 @@ def stepwise_selection(
     original = Left.by(baseline, data).excess("validate")
     for number in range(1, MOST_CAUSES + 1):
         here = Left.by(current, data)
-        if not remaining or nothing_left(here, data):
+        done = _settled(current, here, data) if number == 1 else nothing_left(here, data)
+        if not remaining or done:
             break
-        progress(
-            f"round {number}: {len(remaining)} effects", 0.1 + 0.75 * number / (MOST_CAUSES + 1)
-        )
+        share = 0.1 + 0.75 * number / (MOST_CAUSES + 1)
+        progress(f"round {number}: {len(remaining)} effects", share)
         current, trials = try_effects(current, data, remaining, rng)
         needed = NEARLY_ALL if small(here, least) else LEAST_SHARE
         judge(trials, current, data, original, needed, rng)
@@ -199,6 +200,14 @@ def stepwise_selection(
     while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
         found, current = fewer
     return Outcome(current, rounds, found)
+
+
+def _settled(fitted: Fitted, left: Left, data: Data) -> bool:
+    """Whether there is nothing to look for: hardly more than noise is left, and what is known is nearly as declared.
+
+    With records of the healthy machine what is left counts how far that moved.
+    """
+    return nothing_left(left, data) and (data.healthy is not None or not departs(fitted))
 
 
 def _forget(trials: Sequence[Trial], current: Fitted, data: Data) -> None:
@@ -256,7 +265,7 @@ def _without_one(
         counted = [(left, other)]
         if channel is not None:
             counted.append((left.of(channel), other.of(channel)))
-        if nothing_left(other, data) or all(
+        if _settled(without, other, data) or all(
             now.excess(r) >= (1.0 - LEAST_SHARE) * then.excess(r)
             for now, then in counted
             for r in ROLES
