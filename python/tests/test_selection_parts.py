@@ -8,8 +8,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from sms.diagnosis.reference import _inflation
-from sms.diagnosis.selection import judgement
+from sms.diagnosis.selection import judgement, pairs
 from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.finite_steps import Step
 from sms.diagnosis.selection.outcome import Round
 from sms.estimation.windows import Runs
 
@@ -87,3 +88,26 @@ def test_of_a_crowd_those_stay_that_are_hardly_worse(
         accepted.append(trial)
     members = judgement.alike(accepted, cast(Any, None), cast(Any, None))
     assert "".join(sorted(m.effect.id for m in members)) == class_of
+
+
+def test_pairs_are_filled_up_with_what_was_not_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a lung with two wrong settings one promised nothing alone, and nothing beside the best candidate either."""
+    current = cast(Any, "model as it stands")
+
+    def none_helps(effects: list[Any], *model: Any) -> list[Step]:
+        return [Step(0.0, current, np.zeros(1)) for _ in effects]
+
+    monkeypatch.setattr(pairs, "best_steps", none_helps)
+    trials = []
+    for name, p_value, lower in (
+        ("a", 0.5, 0.0),
+        ("b", 0.1, 3.0),
+        ("c", 0.2, 0.0),
+        ("d", 0.1, 5.0),
+    ):
+        fitted = "its own" if lower > 0.0 else current
+        trial = Trial(cast(Any, name), cast(Any, fitted), p_value, np.zeros(1))
+        trial.lower = lower
+        trials.append(trial)
+    tried, _ = pairs._most_promising(trials, current, cast(Any, None))
+    assert [t.effect for t in tried] == ["d", "b", "c", "a"]

@@ -78,8 +78,8 @@ def _rivals(
 def _most_promising(
     trials: Sequence[Trial], current: Fitted, data: Data
 ) -> tuple[list[Trial], dict[Effect, Step]]:
-    """Those that were fitted and lower most, and those that finite steps on top of the best of them would lower it
-    most: beside a large cause another one may be hidden altogether. With those steps.
+    """Those that were fitted and lower most, those that finite steps on top of the best of them would lower it most
+    (beside a large cause another one may be hidden altogether), and the others by their score tests. With those steps.
     """
     fitted = sorted((t for t in trials if t.fitted is not current), key=lambda t: -t.lower)
     if not fitted:
@@ -88,7 +88,9 @@ def _most_promising(
     steps = best_steps([t.effect for t in others], fitted[0].fitted, data)
     beside = {t.effect: s for t, s in zip(others, steps, strict=True) if s.gain > 0.0}
     helping = [t for t in sorted(others, key=lambda t: -_gain(beside, t)) if t.effect in beside]
-    tried = [*fitted[: PAIRED - PARTNERS], *helping[:PARTNERS], *fitted[PAIRED - PARTNERS :]]
+    best, more = fitted[: PAIRED - PARTNERS], fitted[PAIRED - PARTNERS :]
+    by_score = sorted((t for t in trials if t.fitted is current), key=lambda t: t.p_value)
+    tried = [*best, *helping[:PARTNERS], *more, *by_score]
     return list({id(t.effect): t for t in tried}.values())[:PAIRED], beside
 
 
