@@ -14,6 +14,7 @@ import numpy as np
 from sms.callbacks import Progress
 from sms.diagnosis import wording
 from sms.diagnosis.adequacy.repeatability import Repeatability, arrangement, repeatability
+from sms.diagnosis.adequacy.verdict import of_causes
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
@@ -81,11 +82,7 @@ def decide(outcome: Outcome, before: Repeatability, after: Repeatability) -> Ver
     drifts = after.drift > least and after.drift_p_value < UNKNOWN_CHANCE
     if repeats or drifts:
         return "unknown"
-    if not outcome.groups:
-        return "no-evidence"
-    if len(outcome.groups) > 1:
-        return "combination"
-    return "cause" if len(outcome.groups[0]) == 1 else "class"
+    return of_causes(outcome.groups) if outcome.groups else "no-evidence"
 
 
 def complete(blank: Diagnosis, case: Case, rng: np.random.Generator) -> Diagnosis:

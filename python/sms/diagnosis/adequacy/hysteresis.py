@@ -41,8 +41,8 @@ class Hysteresis:
 
 
 def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
-    """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none worth a
-    word, or where the cause grows beside it."""
+    """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none that is
+    practically significant, or where the cause grows beside it."""
     gram, rows = np.zeros((3, 3)), 0
     for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
         played = _sensitivity(runs, at, effect)

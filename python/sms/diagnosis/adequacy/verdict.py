@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from sms.diagnosis.adequacy.hysteresis import Hysteresis, hysteresis
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy, inconstancy
 from sms.diagnosis.adequacy.residual_energy import Left
@@ -47,6 +49,11 @@ def decide(outcome: Outcome, adequate: bool) -> Verdict:
     """One of the verdicts, data-fault aside: the causes that stand, whatever they leave; else whether much is wrong."""
     if not outcome.groups:
         return "no-evidence" if adequate and not outcome.found else "unknown"
-    if len(outcome.groups) > 1:
+    return of_causes(outcome.groups)
+
+
+def of_causes(groups: Sequence[Sequence[Trial]]) -> Verdict:
+    """The verdict where causes are named: one class of trials for each."""
+    if len(groups) > 1:
         return "combination"
-    return "cause" if len(outcome.groups[0]) == 1 else "class"
+    return "cause" if len(groups[0]) == 1 else "class"
