@@ -32,6 +32,10 @@ def main() -> int:
     parser.add_argument("action", choices=("record", "compare"))
     parser.add_argument("file", type=Path)
     options = parser.parse_args()
+    if options.action == "compare" and not options.file.is_file():
+        parser.error(
+            f"there is no {options.file}; make it with the other build: record {options.file}"
+        )
     now = hashes()
     if options.action == "record":
         options.file.write_text(json.dumps(now, indent=1) + "\n")
