@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
 
 #include "estimation/fit.hpp"
 #include "estimation/tank.hpp"
@@ -80,16 +81,20 @@ TEST_CASE("the tank's jacobian agrees with differences, by every law, charging a
         const double h =
             1e-6 * std::max(std::abs(sms::param(p, free[k])), 1e-3 * std::abs(sms_param_describe(free[k])->value));
         if (!(h > 0.0)) continue;
-        sms::Params<double> up = p, down = p;
-        sms::param(up, free[k]) += h;
-        sms::param(down, free[k]) -= h;
-        Eigen::VectorXd ru, rd;
-        problem.evaluate(up, {}, &ru, nullptr);
-        problem.evaluate(down, {}, &rd, nullptr);
-        const Eigen::VectorXd difference = (ru - rd) / (2 * h);
-        INFO(sms_param_describe(free[k])->name, ", charge ", charge);
         const Eigen::VectorXd column = jacobian.col(static_cast<Eigen::Index>(k));
-        CHECK((difference - column).norm() <= 1e-4 * column.norm() + 1e-8 / h);
+        // A row in whose stencil the tank fills up (the flow's slope turns there) is judged by the narrower stencil.
+        Eigen::VectorXd error = Eigen::VectorXd::Constant(column.size(), INFINITY);
+        for (const double step : {h, 0.01 * h}) {
+          sms::Params<double> up = p, down = p;
+          sms::param(up, free[k]) += step;
+          sms::param(down, free[k]) -= step;
+          Eigen::VectorXd ru, rd;
+          problem.evaluate(up, {}, &ru, nullptr);
+          problem.evaluate(down, {}, &rd, nullptr);
+          error = error.cwiseMin(((ru - rd) / (2 * step) - column).cwiseAbs());
+        }
+        INFO(std::string(sms_param_describe(free[k])->name), ", charge ", charge, ", h ", h);
+        CHECK(error.norm() <= 1e-4 * column.norm() + 1e-8 / h);
       }
     }
   }
