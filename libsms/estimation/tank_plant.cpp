@@ -32,6 +32,17 @@ TankPlant::TankPlant(std::vector<TankPlantRecord> records, const TankNoise& nois
   }
 }
 
+int TankPlant::steps_of(const Window& window) const {
+  constexpr double kLongerAtRest = 4.0;
+  constexpr double kSettled = 1.0;  // s since the command has moved: far longer than any spool, line or converter takes
+  const TankPlantRecord& record = of(window.record);
+  const Eigen::Index first =
+      std::max<Eigen::Index>(window.first - static_cast<Eigen::Index>(kSettled / record.step), 0);
+  const auto command = record.command.segment(first, window.first + window.samples - first);
+  const bool rests = !(command.maxCoeff() > command.minCoeff());
+  return detail::steps_over(record.step, rests ? kLongerAtRest * longest_step_ : longest_step_);
+}
+
 Eigen::VectorXd TankPlant::guess(int record, int first) const {
   const TankPlantRecord& r = of(record);
   const int samples = std::max(8, static_cast<int>(0.05 / r.step));
@@ -47,7 +58,7 @@ Eigen::VectorXd TankPlant::state(const Params<double>& params, const Window& win
                                  const Eigen::VectorXd& start) const {
   const TankPlantRecord& record = of(window.record);
   const Tank<double> tank = tank_of(params, record);
-  const int steps = detail::steps_over(record.step, longest_step_);
+  const int steps = steps_of(window);
   RecordedVoltage<double> command(record.command, record.hold, steps, delay_to_chamber(tank.params) / record.step);
   const TankState<double> state =
       begin(tank, start.data(), command.spool(tank.params, window.first, record.step / steps));

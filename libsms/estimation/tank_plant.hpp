@@ -4,6 +4,8 @@
 // A window starts with what is free: pressure and temperature of the air, the reservoir's pressure and the thermocouple.
 // Without heat the temperature is that of the supplied air, and the thermometer sees that. The spool follows the command
 // alone and is run up over the 50 ms before the window.
+//
+// A window in which the spool rests is simulated in longer steps: an opening takes milliseconds, what follows seconds.
 #pragma once
 
 #include "estimation/hidden_inputs.hpp"
@@ -42,7 +44,8 @@ class TankPlant {
   static constexpr int kFelt = kStart;
   static constexpr int kHidden = 2;  // mass flow into the tank, kg/s; pressure at the head of the supply line, Pa
 
-  // std::invalid_argument for arrays of different lengths or numbers that are not finite; a reading may be NaN.
+  // longest_step: s, where the spool moves. std::invalid_argument for arrays of different lengths or numbers that are not
+  // finite; a reading may be NaN.
   TankPlant(std::vector<TankPlantRecord> records, const TankNoise& noise, const ActuatorLaws& laws,
             double longest_step);
 
@@ -69,6 +72,9 @@ class TankPlant {
 
  private:
   const TankPlantRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
+
+  // Steps of integration a sample.
+  int steps_of(const Window& window) const;
 
   // Tank and state where a window begins.
   template <typename S>
@@ -134,7 +140,7 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   const S head = p.supply_pressure;
   const bool droops = p.supply_line_resistance > S(0);
   const double sample = record.step;
-  const int steps = detail::steps_over(sample, longest_step_);
+  const int steps = steps_of(window);
   const S h(sample / steps);
   const HiddenInputs<S> pushes(hidden, knots, window.samples);
   RecordedVoltage<S> command(record.command, record.hold, steps, delay_to_chamber(p) / S(sample));
