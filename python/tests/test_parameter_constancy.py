@@ -65,10 +65,17 @@ def test_a_leak_that_opens_at_a_pressure_is_another_law(tmp_path: Path) -> None:
 def test_on_a_machine_whose_flow_is_off_a_leak_of_another_size_in_each_half_keeps_its_law(
     tmp_path: Path,
 ) -> None:
-    leak = "fitting_leakage of lower"
-    data, fitted = fitted_to(tmp_path, "bench", "fitting_leakage:lower", SEED, leak, 3.0, 2.0)
-    assert Left.by(fitted, data).excess("identify") > 0.1
-    assert inconstancy(fitted, fitted.hypothesis.causes[0], data) is None
+    """About every other machine drawn is off where its records show it: drawn until one is."""
+    leak, excess = "fitting_leakage of lower", 0.0
+    for seed in range(SEED, SEED + 20):
+        print(f"seed {seed}")
+        hidden = "bench", "fitting_leakage:lower"
+        data, fitted = fitted_to(tmp_path / str(seed), *hidden, seed, leak, imperfection=2.0)
+        assert inconstancy(fitted, fitted.hypothesis.causes[0], data) is None
+        excess = Left.by(fitted, data).excess("identify")
+        if excess > 0.1:
+            break
+    assert excess > 0.1
 
 
 @pytest.mark.full
