@@ -90,12 +90,12 @@ S friction_map(const Params<S>& p, const S& velocity) {
   using P = Params<S>;
   using V = ValueOf<S>;
   static constexpr MapKnots<V, 3> knots({V(0.03), V(0.12), V(0.3)});  // m/s
-  static constexpr S P::*extend[] = {&P::friction_map_extend_1, &P::friction_map_extend_2, &P::friction_map_extend_3};
-  static constexpr S P::*retract[] = {&P::friction_map_retract_1, &P::friction_map_retract_2,
-                                      &P::friction_map_retract_3};
-  const bool extends = velocity > S(0);
-  const S speed = extends ? velocity : S(-velocity);
-  return S(1) + map_error(p, extends ? extend : retract, map_place<S>(knots, speed));
+  static constexpr S P::*at_knot[2][3] = {
+      {&P::friction_map_retract_1, &P::friction_map_retract_2, &P::friction_map_retract_3},
+      {&P::friction_map_extend_1, &P::friction_map_extend_2, &P::friction_map_extend_3}};
+  using std::abs;
+  const S speed = abs(velocity);
+  return S(1) + map_error(p, at_knot[velocity > S(0) ? 1 : 0], map_place<S>(knots, speed));
 }
 
 // |v / width|^delta, held at 1000 from a million widths on: with delta >= 0.5 (its bound) it is no less there, and exp

@@ -34,8 +34,8 @@ struct MapPlace {
 template <typename S, int kKnots>
 MapPlace<S> map_place(const MapKnots<ValueOf<S>, kKnots>& knots, const S& x) {
   int above = 1;
-  while (above < kKnots - 1 && x > S(knots.at[above])) {
-    ++above;
+  for (int i = 1; i < kKnots - 1; ++i) {  // counts, without a branch
+    above += x > S(knots.at[i]) ? 1 : 0;
   }
   return {above, limited<S>((x - S(knots.at[above - 1])) * S(knots.per_span[above]), S(0), S(1))};
 }
