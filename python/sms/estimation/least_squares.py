@@ -84,6 +84,55 @@ def changed(params: _core.Params, names: list[str], values: Array) -> _core.Para
     return copy
 
 
+class _Objective:
+    """|residual|^2 + |pull (value - centre)|^2 of the parameters over their scales, value (free,), and its bounds."""
+
+    def __init__(
+        self, problem: Problem, initial: _core.Params, free: list[Free], pull: Array | None
+    ) -> None:
+        self._problem = problem
+        self._initial = initial
+        self._free = free
+        self._names = [f.name for f in free]
+        self.scale = np.array([f.scale for f in free])
+        self.pull = (np.diag([f.pull for f in free]) if pull is None else pull) * self.scale
+        self.lower = np.array([f.lower for f in free]) / self.scale
+        self.upper = np.array([f.upper for f in free]) / self.scale
+        self.centre = np.array([f.centre for f in free]) / self.scale
+
+    @property
+    def start(self) -> Array:
+        return self.within(np.array([self._initial[n] for n in self._names]) / self.scale)
+
+    def within(self, value: Array) -> Array:
+        return np.asarray(np.clip(value, self.lower, self.upper))
+
+    def params(self, value: Array) -> _core.Params:
+        low, high = [f.lower for f in self._free], [f.upper for f in self._free]
+        return changed(self._initial, self._names, np.clip(value * self.scale, low, high))
+
+    def residual(self, value: Array) -> Array:
+        return self._problem.evaluate(self.params(value), ())[0]
+
+    def slopes(self, value: Array) -> tuple[Array, Array]:
+        """Residual (rows,) and Jacobian (rows, free)."""
+        residual, jacobian = self._problem.evaluate(self.params(value), self._names)
+        return residual, jacobian * self.scale
+
+    def cost(self, residual: Array, value: Array) -> float:
+        return float(residual @ residual + np.sum((self.pull @ (value - self.centre)) ** 2))
+
+
+@dataclass
+class _Iterate:
+    """Where a fit stands: parameters over their scales, what they leave, and the Jacobian that is gone by."""
+
+    value: Array
+    residual: Array
+    slope: Array
+    exact: bool  # the Jacobian was worked out here, not corrected by steps
+
+
 def fit_windows(
     problem: Problem,
     initial: _core.Params,
@@ -97,66 +146,70 @@ def fit_windows(
     pull: (r, free) per unit; each parameter's own if left out. slopes: (rows, free), a Jacobian from nearby to begin
     with. most_steps: Jacobians that are worked out at most.
     """
-    names = [f.name for f in free]
-    scale = np.array([f.scale for f in free])
-    pull = (np.diag([f.pull for f in free]) if pull is None else pull) * scale
-    lower = np.array([f.lower for f in free]) / scale
-    upper = np.array([f.upper for f in free]) / scale
-    centre = np.array([f.centre for f in free]) / scale
-    value = np.clip(np.array([initial[n] for n in names]) / scale, lower, upper)
-
-    def at(value: Array) -> _core.Params:
-        within = np.clip(value * scale, [f.lower for f in free], [f.upper for f in free])
-        return changed(initial, names, within)
-
-    def cost(residual: Array, value: Array) -> float:
-        return float(residual @ residual + np.sum((pull @ (value - centre)) ** 2))
-
-    def slopes_at(value: Array) -> tuple[Array, Array]:
-        residual, jacobian = problem.evaluate(at(value), names)
-        return residual, jacobian * scale
-
-    exact = slopes is None
-    residual, slope = (
-        slopes_at(value) if slopes is None else (problem.evaluate(at(value), ())[0], slopes * scale)
-    )
-    worked_out, converged = int(exact), not free
+    objective = _Objective(problem, initial, free, pull)
+    value = objective.start
+    if slopes is None:
+        at = _Iterate(value, *objective.slopes(value), exact=True)
+    else:
+        at = _Iterate(value, objective.residual(value), slopes * objective.scale, exact=False)
+    worked_out, converged = int(at.exact), not free
     for _ in range(SECANTS * most_steps if free else 0):
-        here = cost(residual, value)
-        little = ENOUGH + _worthless(residual, slope)
-        step = _linear_step(slope, residual, pull, value - centre, lower - value, upper - value)
-        promised = here - cost(residual + slope @ step, value + step)
-        gained, length, tried = 0.0, 1.0, value
-        for _ in range(MOST_HALVINGS + 1 if exact else 1):
-            if promised * length * (2.0 - length) < little:
-                break
-            tried = np.clip(value + length * step, lower, upper)
-            after, _ = problem.evaluate(at(tried))
-            gained = here - cost(after, tried)
-            if gained > 0.0:
-                break
-            length *= 0.4
-        moved, value = tried - value, tried if gained > 0.0 else value
-        if exact and gained < little:
+        little = ENOUGH + _worthless(at.residual, at.slope)
+        tried, after, gained, promised = _line_search(objective, at, little)
+        moved = tried - at.value
+        if gained > 0.0:
+            at.value = tried
+        if at.exact and gained < little:
             converged = True
             if gained > 0.0:
-                residual, slope = slopes_at(value)
+                at.residual, at.slope = objective.slopes(at.value)
             break
         if gained >= max(little, AS_PROMISED * promised):
-            missed = (after - residual - slope @ moved) / max(float(moved @ moved), 1e-300)
-            slope += np.outer(missed, moved)
-            residual, exact = after, False
+            missed = (after - at.residual - at.slope @ moved) / max(float(moved @ moved), 1e-300)
+            at.slope += np.outer(missed, moved)
+            at.residual, at.exact = after, False
         elif worked_out < most_steps:
-            residual, slope = slopes_at(value)
-            exact, worked_out = True, worked_out + 1
+            at.residual, at.slope = objective.slopes(at.value)
+            at.exact, worked_out = True, worked_out + 1
         else:
-            residual = after if gained > 0.0 else residual
+            at.residual = after if gained > 0.0 else at.residual
             break
-    if not exact and worked_out < most_steps:
-        residual, slope = slopes_at(value)
+    if not at.exact and worked_out < most_steps:
+        at.residual, at.slope = objective.slopes(at.value)
     margin = 1e-6
-    held = ((value <= lower + margin) | (value >= upper - margin)).tolist()
-    return WindowFit(at(value), np.asarray(residual), np.asarray(slope / scale), held, converged)
+    held = (at.value <= objective.lower + margin) | (at.value >= objective.upper - margin)
+    return WindowFit(
+        objective.params(at.value),
+        np.asarray(at.residual),
+        np.asarray(at.slope / objective.scale),
+        held.tolist(),
+        converged,
+    )
+
+
+def _line_search(
+    objective: _Objective, at: _Iterate, little: float
+) -> tuple[Array, Array, float, float]:
+    """Where the linearised problem is solved, or nearer while that gains nothing.
+
+    The parameters tried last, what they leave, what they gain of the cost, and what the full step promised. A corrected
+    Jacobian is given one trial only.
+    """
+    here = objective.cost(at.residual, at.value)
+    room = objective.lower - at.value, objective.upper - at.value
+    step = _linear_step(at.slope, at.residual, objective.pull, at.value - objective.centre, *room)
+    promised = here - objective.cost(at.residual + at.slope @ step, at.value + step)
+    tried, after, gained, length = at.value, at.residual, 0.0, 1.0
+    for _ in range(MOST_HALVINGS + 1 if at.exact else 1):
+        if promised * length * (2.0 - length) < little:
+            break
+        tried = objective.within(at.value + length * step)
+        after = objective.residual(tried)
+        gained = here - objective.cost(after, tried)
+        if gained > 0.0:
+            break
+        length *= 0.4
+    return tried, after, gained, promised
 
 
 def _worthless(residual: Array, jacobian: Array) -> float:
