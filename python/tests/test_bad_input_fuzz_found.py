@@ -24,6 +24,7 @@ from sms.io.plausible import ABSURD, usual_range
 from sms.io.schema import LARGEST_TOML, ParameterTable
 from sms.io.signals import SIGNALS
 from sms.io.table_files import read_table
+from sms.io.units import to_si
 from sms.report.console import print_diagnosis
 from sms.scenario import load_scenario
 
@@ -102,11 +103,18 @@ def test_flow_records_that_are_no_charge_are_named() -> None:
     assert fast.found is None and "check the units of time and pressure" in fast.look.faults[0]
     still = fit_record(replace(record, pressure=np.full_like(record.pressure, 86e3)), declared)
     assert still.found is None and "the pressure does not move" in still.look.faults[0]
+    wild = record.pressure.copy()
+    wild[wild.size // 2] = 2e10
+    out_of_range = fit_record(replace(record, pressure=wild), declared)
+    assert out_of_range.found is None and "up to 2e+07 kPa" in out_of_range.look.faults[-1]
+    one_sample = replace(record, time=record.time[:1], pressure=record.pressure[:1])
+    assert "1 samples are too few" in fit_record(one_sample, declared).look.faults[0]
 
 
 def test_nothing_is_said_beside_the_sentence() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        assert to_si("1e308 bar", "Pa", "") == np.inf
         assert ParameterTable(value=3).model_dump()["value"] == 3  # type: ignore[arg-type]
         response = frequency_response(np.zeros(64), np.arange(64.0), 0.1)
     assert not np.any(response.coherence)

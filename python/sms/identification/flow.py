@@ -95,14 +95,11 @@ def fit_record(
     """
     look = look_at(record)
     if look.faults:
-        return FlowFit(record, look, None, {}, {}, (), None, np.nan, np.nan, heat)
+        return _not_fitted(record, look, (), heat)
     try:
         base = start_of(record, look, machine or declared_params(declared))
     except OutOfRangeError as beyond:
-        fault = f"it is no charge or discharge of this tank ({beyond}); check the units of time and pressure"
-        return FlowFit(
-            record, replace(look, faults=(fault,)), None, {}, {}, (), None, np.nan, np.nan, heat
-        )
+        return _not_fitted(record, look, (_no_transient(str(beyond)),), heat)
     starts = [
         with_start(base, component_critical_ratio=b, component_subsonic_index=m) for b, m in STARTS
     ]
@@ -116,12 +113,34 @@ def fit_record(
     profiles = {n: profile(found, n) for n in COMPONENT if with_profiles and n in fitted}
     budget = budget_of(found, declared, heat)
     spread = float(np.sqrt(sum(c.uncertainty**2 for c in budget[1:])))
+    mae = _mae(found, record, look)
+    told = bool(budget) and np.isfinite(spread + budget[0].uncertainty)
+    # A model that leaves more than the pressure moves explains nothing.
+    if not told or mae > np.median(np.abs(record.pressure - record.pressure[0])):
+        why = f"C cannot be told from readings from {_span_of(record)}"
+        return _not_fitted(record, look, (*found.warnings, _no_transient(why)), heat)
     known = {name: known_of(found, name, profiles.get(name), spread) for name in COMPONENT}
     classic = _classic(record, look, base, surroundings, weight, counted, heat, huber)
     return FlowFit(
         record, look, found, known, profiles, budget, classic,
-        _mae(found, record, look), _mae(classic, record, look) if classic else np.nan, heat,
+        mae, _mae(classic, record, look) if classic else np.nan, heat,
     )  # fmt: skip
+
+
+def _no_transient(why: str) -> str:
+    return (
+        f"it is no charge or discharge of this tank ({why}); check the units of time and pressure"
+    )
+
+
+def _span_of(record: FlowRecord) -> str:
+    low, high = 1e-3 * record.pressure.min(), 1e-3 * record.pressure.max()
+    return f"{low:.4g} up to {high:.4g} kPa within {record.time[-1] - record.time[0]:.4g} s"
+
+
+def _not_fitted(record: FlowRecord, look: Look, faults: tuple[str, ...], heat: str) -> FlowFit:
+    look = replace(look, faults=(*look.faults, *faults))
+    return FlowFit(record, look, None, {}, {}, (), None, np.nan, np.nan, heat)
 
 
 def fit_records(

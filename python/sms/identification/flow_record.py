@@ -88,7 +88,7 @@ def look_at(record: FlowRecord) -> Look:
     if charge and record.supply is not None:
         outside = float(np.mean(record.supply[-few:]))
     floor, ceiling = None, None
-    if not charge and _rests(p, noise) and final > 1.02 * outside + 3.0 * noise:
+    if not faults and not charge and _rests(p, noise) and final > 1.02 * outside + 3.0 * noise:
         floor = final
         notes.append(
             f"the readings rest at {1e-3 * (final - outside):.1f} kPa above ambient although the tank "

@@ -98,7 +98,8 @@ def array_to_si(
 ) -> NDArray[np.float64]:
     """Convert `values`, any shape, from `unit` to `si_unit`. InputError for another dimension."""
     parsed = _check_dimension(unit, si_unit, where)
-    converted = _registry().Quantity(values, parsed).to(_parse_unit(si_unit, where)).magnitude
+    with np.errstate(over="ignore"):  # infinity is refused where the range is known
+        converted = _registry().Quantity(values, parsed).to(_parse_unit(si_unit, where)).magnitude
     return np.asarray(converted, dtype=np.float64)
 
 
