@@ -27,7 +27,7 @@ from sms.diagnosis.adequacy.residual_energy import (
     tolerated,
 )
 from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
-from sms.diagnosis.adequacy.systematic_error import with_systematic_error
+from sms.diagnosis.adequacy.systematic_error import generalised
 from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
@@ -40,7 +40,6 @@ from sms.diagnosis.hypothesis import (
     Fitted,
     baseline_hypothesis,
     fit,
-    fit_with_discrepancy,
     nuisance_of,
 )
 from sms.diagnosis.localisation.empirical_term import empirical_of
@@ -125,7 +124,7 @@ def investigate(
     if outcome.found:
         law = inconstancy_of(outcome, data, adequate)
         progress("estimating sizes beside what no parameter explains", 0.8)
-        final = _with_discrepancy(outcome.final, data)
+        final = generalised(outcome.final, data)
         outcome = replace(outcome, final=final, named=law is None)
     before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     if not adequate and not outcome.groups:
@@ -135,15 +134,6 @@ def investigate(
         found = inconsistency(plain, data.as_declared, able, before.floor)
     verdict = decide(outcome, adequate) if found is None else "data-fault"
     return Case(data, baseline, outcome, before, after, least, blind, able, verdict, found, law)
-
-
-def _with_discrepancy(fitted: Fitted, data: Data) -> Fitted:
-    """The same model, its values and their errors by generalised least squares."""
-    if (allowed := data.allowed(data.identify)) is not None:
-        final = fit(fitted.hypothesis, data.identify, fitted.params, discrepancy=allowed)
-    else:
-        final = fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
-    return with_systematic_error(final, data.identify)
 
 
 def complete(
@@ -266,7 +256,7 @@ def _cause(members: list[Trial], case: Case) -> Cause:
     data, final = case.data, case.outcome.final
 
     def found(m: Trial) -> tuple[ParameterValue, ...]:
-        at = final if m is members[0] else _with_discrepancy(m.fitted, data)
+        at = final if m is members[0] else generalised(m.fitted, data)
         others = m.effect.parameters[1:]
         beside = (value_of(at, n, data.rig.declared(n).value) for n in others)
         return (found_value(at, m.effect, data), *beside)

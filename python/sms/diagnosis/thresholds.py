@@ -87,6 +87,10 @@ LEAST_SHARE = 0.5
 NEARLY_ALL = 0.85
 """The same where what is left is within what is tolerated. Judgement: half of so small an error is imitated
 by many effects, nearly all of it hardly by any."""
+SURE = 5.0
+"""Standard errors, systematic errors counted, by which an effect is beyond what is declared of it that is named for
+taking most of what is left where that is within what is tolerated. Convention: five sigma.
+"""
 DEPARTS = 1e-3
 """Chance from which on the numbers that are known lie too far from what is declared for a healthy machine, however
 little is left. Convention: 0.1 percent.

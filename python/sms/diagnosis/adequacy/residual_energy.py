@@ -97,6 +97,33 @@ def logarithms(runs: Runs, residual: Array) -> float:
     return float(np.sum(np.log1p(energies(runs, residual))))
 
 
+def taken_beyond_floor(before: Fitted, after: Fitted, data: Data) -> tuple[float, float]:
+    """Of what one model leaves beyond the noise floor, the share that another takes: on identification records, and on
+    validation records with what is known fitted again.
+
+    One floor for both: what changes within `kind.short`, and the declared noise at least. What a converter's steps add
+    to the declared noise is left by every model.
+    """
+    models = (
+        (data.identify, (before, after)),
+        (
+            data.validate,
+            (refitted(before, data), refitted(after, data)),
+        ),
+    )
+    identify, validate = (_taken_beyond_floor(runs, *pair) for runs, pair in models)
+    return identify, validate
+
+
+def _taken_beyond_floor(runs: Runs, before: Fitted, after: Fitted) -> float:
+    residuals = before.fit.residual, after.fit.residual
+    floor = np.maximum(np.minimum(*(runs.floor(r) for r in residuals)), 1.0)
+    was, now = (
+        float(np.mean(np.maximum(energies(runs, r).mean(axis=0) - floor, 0.0))) for r in residuals
+    )
+    return 1.0 - now / max(was, 1e-12)
+
+
 def excess(energy: Array) -> float:
     """Of (windows, channels): mean square beyond the noise, the channels' mean."""
     return float(np.mean(np.maximum(energy.mean(axis=0) - 1.0, 0.0)))

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Fitted, nuisance_of
+from sms.diagnosis.hypothesis import Data, Fitted, fit, fit_with_discrepancy, nuisance_of
 from sms.diagnosis.localisation.signal_functions import (
     alike,
     alike_signals,
@@ -37,6 +37,18 @@ ITERATIONS = 40
 """Of the fixed point of the standard deviations. Run time: it settles within some percent."""
 LEAST = 1e-3
 """Standard deviations of the noise: a function that moves readings by less is nothing. Numerics."""
+
+
+def generalised(fitted: Fitted, data: Data) -> Fitted:
+    """The same model, its values and their errors by generalised least squares, systematic errors counted.
+
+    The discrepancy is that of the healthy machine where reference records told it, else the one that the model leaves.
+    """
+    if (allowed := data.allowed(data.identify)) is not None:
+        final = fit(fitted.hypothesis, data.identify, fitted.params, discrepancy=allowed)
+    else:
+        final = fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
+    return with_systematic_error(final, data.identify)
 
 
 def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
@@ -67,7 +79,8 @@ def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
     before = np.sqrt(np.maximum(np.diag(covariance)[place], 0.0))
     after = np.sqrt(np.diag(systematic.covariance) + systematic.move**2) / scale
     grown = np.ones(len(free))
-    grown[place] = np.where(before > 0.0, np.maximum(after / np.maximum(before, 1e-300), 1.0), 1.0)
+    ratio = np.divide(after, before, out=np.ones(len(place)), where=before > 0.0)
+    grown[place] = np.maximum(ratio, 1.0)
     return replace(fitted, covariance=covariance * np.outer(grown, grown))
 
 

@@ -12,7 +12,8 @@ import numpy as np
 from scipy.stats import chi2, wilcoxon
 
 from sms.arrays import Array
-from sms.diagnosis.adequacy.residual_energy import ROLES, Left
+from sms.diagnosis.adequacy.residual_energy import ROLES, Left, taken_beyond_floor
+from sms.diagnosis.adequacy.systematic_error import generalised
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Healthy
 from sms.diagnosis.other_records import refitted
@@ -23,6 +24,7 @@ from sms.diagnosis.thresholds import (
     LEAST_SHARE,
     MOST_MEMBERS,
     SIGNIFICANT,
+    SURE,
     TELLS_APART,
     TELLS_APART_IN_A_CROWD,
     TWINS,
@@ -80,6 +82,45 @@ def judge(
             _by_windows(trial, before.of(channel), after.of(channel), weights, tried)
             trial.reason = _untenable(trial, data) or _leaves_much(trial, needed)
         trial.accepted = not trial.reason
+    if needed > LEAST_SHARE:
+        _accept_significant([t for t in trials if t.fitted is not current], current, data)
+
+
+def _accept_significant(fitted: Sequence[Trial], current: Fitted, data: Data) -> None:
+    """Where little is left: the best of all trials also stands if it takes most of that, beyond the measured floor of
+    the noise, and its size is beyond doubt beside what no parameter explains. With it stand the others that take most:
+    which of them is no worse is asked of a class.
+
+    A smooth error of a map takes a part of what such an effect does, and leaves one of its own; so the share that is
+    left says less here than how far the size is from what its errors and systematic ones could make.
+    """
+    best = max(fitted, key=lambda t: t.lower, default=None)
+    if best is None or best.accepted or not _takes_most(best, current, data):
+        return
+    if not _is_sure(best, data):
+        return
+    for trial in fitted:
+        if _takes_most(trial, current, data):
+            trial.accepted, trial.reason = True, ""
+
+
+def _takes_most(trial: Trial, current: Fitted, data: Data) -> bool:
+    """Of what is left beyond the measured floor; not of an effect to which the validation records are insensitive."""
+    if trial.cross_validated or _untenable(trial, data):
+        return False
+    seen, gained = taken_beyond_floor(current, trial.fitted, data)
+    return min(seen, gained) > 0.0 and (1.0 - seen) * (1.0 - gained) < (1.0 - LEAST_SHARE) ** 2
+
+
+def _is_sure(trial: Trial, data: Data) -> bool:
+    """Whether its size is beyond what is declared of it by five standard errors."""
+    name = trial.effect.parameters[0]
+    found, declared = generalised(trial.fitted, data), data.rig.declared(name)
+    moved, error = (
+        abs(found.params[name] - found.hypothesis.start[name]),
+        found.standard_error(name),
+    )
+    return moved - declared.uncertainty > SURE * error > 0.0
 
 
 def channel_of_its_own(effect: Effect, data: Data) -> int | None:
