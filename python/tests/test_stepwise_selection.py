@@ -11,12 +11,14 @@ from plant_support import fitted_baseline, write_bench
 from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.adequacy.residual_energy import (
+    ROLES,
     Left,
     departs,
     energies,
     excess,
     nothing_left,
     small,
+    taken_beyond_floor,
     tolerated,
 )
 from sms.diagnosis.effects.catalogue import effects_of
@@ -28,7 +30,8 @@ from sms.diagnosis.hypothesis import (
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.remainder import Unexplained
-from sms.diagnosis.thresholds import LEAST_SHARE
+from sms.diagnosis.selection.finite_steps import extended
+from sms.diagnosis.thresholds import LEAST_SHARE, NEARLY_ALL
 from sms.estimation.least_squares import changed
 from sms.estimation.run import is_held
 from sms.io.check import check_record
@@ -89,6 +92,39 @@ def test_a_leak_that_the_maps_could_make_up_for_is_named_since_they_would_be_far
     (size, *_) = cause.parameters
     assert cause.effect == "piston_leakage"
     assert size.value == pytest.approx(leak, abs=3.0 * size.standard_error)
+
+
+def test_what_a_converters_steps_add_to_the_noise_is_not_counted_as_left(tmp_path: Path) -> None:
+    """Steps of three noise deviations are left by any model: beyond them the right cause takes nearly all."""
+    path = write_bench(tmp_path, 8, {"piston_leakage": 1e-8})
+    for source in load_rig(path).records:
+        table = pd.read_csv(source.file)
+        step = 3.0 * float(np.std(np.diff(table["extension [m]"], 2)) / np.sqrt(6.0))
+        table["extension [m]"] = step * np.round(table["extension [m]"] / step)
+        table.to_csv(source.file, index=False)
+    baseline, data = fitted_baseline(path)
+    (leak,) = (e for e in effects_of(data.rig) if e.key == "piston_leakage")
+    found = fit(extended(baseline.hypothesis, leak, data), data.identify, baseline.params)
+    assert taken_beyond_floor(baseline, baseline, data) == (0.0, 0.0)
+    before, after = Left.by(baseline, data), Left.by(found, data)
+    plain = [1.0 - after.excess(r) / before.excess(r) for r in ROLES]
+    for share, of_declared in zip(taken_beyond_floor(baseline, found, data), plain, strict=True):
+        assert share > max(of_declared, NEARLY_ALL)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(
+    ("seed", "effect"), [(981000, "valve_centre_offset"), (981002, "supply_droop")]
+)
+def test_what_uncertain_maps_take_most_of_is_named_where_its_size_is_beyond_doubt(
+    tmp_path: Path, seed: int, effect: str
+) -> None:
+    """Maps off by 1 %: little is left, of it the cause takes a half on one role of records, and its size is off by more
+    than ten standard errors. Both were `no-evidence`."""
+    truth = tmp_path / "truth.json"
+    draw_machine("bench", seed, tmp_path / "records", truth, effect, imperfection=1.0)
+    answer = diagnose(tmp_path / "records" / "rig.toml")
+    assert [list(cause.members) for cause in answer.causes] == [[effect]]
 
 
 def test_an_excerpt_leaves_what_its_windows_leave_in_the_whole(tmp_path: Path) -> None:
