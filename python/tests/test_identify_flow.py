@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
 from sms.estimation.coloured_noise import Colour, colour_of, coloured_meat
 from sms.identification.estimate import Free, estimate
@@ -17,7 +19,8 @@ from sms.identification.flow_map import valve_map
 from sms.identification.flow_problem import COMPONENT
 from sms.identification.flow_record import FlowRecord, look_at
 from sms.identification.flow_result import load_valve_map
-from sms.io import InputError
+from sms.io import InputError, write_table
+from sms.io.rig import Declaration
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
 
@@ -155,6 +158,89 @@ def test_wild_readings_are_survived_with_a_robust_loss(rng: np.random.Generator)
     ]
     assert errors[1] < 0.01
     assert errors[1] < errors[0]
+
+
+# ---- heat ------------------------------------------------------------------------------------------------
+
+
+def heated(rng: np.random.Generator) -> tuple[FlowRecord, Charging]:
+    """A charge whose tank exchanges heat with its wall: mass and energy integrated apart from the core's equations."""
+    test = Charging(true_component(0.6e-3, True), True, 486e3, duration=8.0)
+    heat, gas, expansion = 60.0 * 0.17, 288.0, 288.0 / 0.4  # W/K, J/(kg K), J/(kg K)
+    start = test.ambient * test.volume / (gas * test.temperature)
+
+    def rate(clock: float, state: NDArray[np.float64]) -> list[float]:
+        mass, energy = state
+        warmth = energy / (mass * expansion)
+        pressure = mass * gas * warmth / test.volume
+        flow = test.component.mass_flow(test.supply, pressure, test.temperature)
+        enthalpy = flow * (expansion + gas) * test.temperature
+        return [flow, enthalpy + heat * (test.temperature - warmth)]
+
+    time = np.arange(800) / 100.0
+    after = time > test.opening
+    span = (0.0, float(time[-1]) - test.opening)
+    first = [start, start * expansion * test.temperature]
+    found = solve_ivp(rate, span, first, "LSODA", time[after] - test.opening, rtol=1e-9, atol=1e-12)
+    pressure = np.full(time.size, test.ambient)
+    warmth = np.full(time.size, test.temperature)
+    warmth[after] = found.y[1] / (found.y[0] * expansion)
+    pressure[after] = found.y[0] * gas * warmth[after] / test.volume
+    noisy = pressure + 323.0 * rng.standard_normal(time.size)
+    read = warmth + 0.2 * rng.standard_normal(time.size)
+    return FlowRecord("heated", time, noisy, None, read, 0.6e-3, test.supply, test.ambient), test
+
+
+def test_a_measured_temperature_is_fitted_with_the_pressure(rng: np.random.Generator) -> None:
+    record, test = heated(rng)
+
+    def open_wall(name: str) -> Declaration:
+        known = declared(name)
+        return replace(known, fit=True) if name == "heat_transfer_coefficient" else known
+
+    fit = fit_record(record, open_wall, heat="energy")
+    alone = fit_record(replace(record, temperature=None), open_wall, heat="energy")
+    assert fit.found is not None and alone.found is not None
+    assert len(fit.found.colours) == 2  # each sensor has a noise of its own
+    assert fit.known[C].value == pytest.approx(truth_of(test)[C], rel=0.01)
+    assert fit.found.params.heat_transfer_coefficient == pytest.approx(60.0, rel=0.05)
+    assert fit.found.sd("heat_transfer_coefficient") < alone.found.sd("heat_transfer_coefficient")
+    assert fit.found.scale == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("chambers", ["polytropic", "energy"])
+def test_the_command_fits_a_temperature_or_says_that_it_does_not(
+    chambers: str, tmp_path: Path, rng: np.random.Generator
+) -> None:
+    record, _ = heated(rng)
+    assert record.temperature is not None
+    columns = {"time [s]": record.time, "p [Pa]": record.pressure, "warmth [K]": record.temperature}
+    write_table(tmp_path / "charge.csv", columns)
+    (tmp_path / "rig.toml").write_text(f"""
+        rig.kind = "flow_test"
+        rig.title = "heated"
+        model.chambers = "{chambers}"
+        signals = {{ time = "time", tank_pressure = "p", tank_temperature = "warmth" }}
+        parameters.ambient_pressure = "86 kPa"
+        parameters.supply_pressure = "486 kPa"
+        parameters.heat_transfer_coefficient = {{ value = "30 W/(m^2 K)", fit = true }}
+        [[records]]
+        file = "charge.csv"
+        role = "identify"
+        conditions = {{ spool_position = "0.6 mm" }}
+    """)
+    result = command("identify", "flow", "rig.toml", "--out", "flow", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert ("tank_temperature is recorded and not used" in result.stdout) == (
+        chambers == "polytropic"
+    )
+    answer = json.loads((tmp_path / "flow" / "flow.json").read_text())["records"][0]
+    assert answer["fitted"]
+    if chambers == "energy":
+        assert answer["noise"] == pytest.approx(323.0, rel=0.1)
+        assert answer["parameters"]["heat_transfer_coefficient"]["value"] == pytest.approx(
+            60.0, rel=0.05
+        )
 
 
 # ---- coloured residuals --------------------------------------------------------------------------------

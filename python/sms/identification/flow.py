@@ -29,6 +29,7 @@ from sms.identification.flow_problem import (
     felt_of,
     problem_of,
     seen_rows,
+    series_of,
     start_of,
     surroundings_of,
     weight_of,
@@ -105,10 +106,10 @@ def fit_record(
     ]
     surroundings = surroundings_of(record, look, declared, heat)
     problem = problem_of(record, look, "iso", heat)
-    weight = weight_of(record, look)
+    weight, series = weight_of(record, look, heat), series_of(record, heat)
     counted = seen_rows(problem, base, look)
     free = felt_of(problem, starts, [*bounds_of_component(), *surroundings])
-    found = estimate(problem, starts, free, weight, counted, huber)
+    found = estimate(problem, starts, free, weight, counted, huber, series)
     fitted = [f.name for f in free]
     profiles = {n: profile(found, n) for n in COMPONENT if with_profiles and n in fitted}
     budget = budget_of(found, declared, heat)
@@ -182,7 +183,8 @@ def fit_start(
     base = with_start(base, component_critical_ratio=ratio, component_subsonic_index=index)
     problem = problem_of(record, look, "iso", heat)
     free = [*bounds_of_component(), *surroundings_of(record, look, declared, heat)]
-    return estimate(problem, [base], free, weight_of(record, look), seen_rows(problem, base, look))
+    weight, counted = weight_of(record, look, heat), seen_rows(problem, base, look)
+    return estimate(problem, [base], free, weight, counted, series=series_of(record, heat))
 
 
 def _classic(
@@ -205,9 +207,8 @@ def _classic(
     coefficient = float(np.clip(base.component_conductance / unit, 0.02, 0.99))
     start = with_start(base, discharge_coefficient=coefficient)
     free = [Free.of("discharge_coefficient"), *surroundings]
-    return estimate(
-        problem_of(record, look, "classic", heat), [start], free, weight, counted, huber
-    )
+    problem = problem_of(record, look, "classic", heat)
+    return estimate(problem, [start], free, weight, counted, huber, series_of(record, heat))
 
 
 def _mae(found: Estimate, record: FlowRecord, look: Look) -> float:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sms import _core
 from sms.arrays import Array
 from sms.identification.estimate import Free, with_start
-from sms.identification.flow_record import FlowRecord, Look, smooth_supply
+from sms.identification.flow_record import FlowRecord, Look, reading_noise, smooth_supply
 from sms.io.rig import Declaration
 from sms.parameters import PARAMETERS
 
@@ -94,7 +94,7 @@ def surroundings_of(record: FlowRecord, look: Look, declared: Declared, heat: st
     wanted = ["tank_line_resistance"]
     if heat == "energy":
         wanted += ["heat_transfer_coefficient"]
-        if record.temperature is not None:
+        if temperature_of(record, heat) is not None:
             wanted += ["thermocouple_time_constant"]
     free += [Free.of(name) for name in wanted if declared(name).fit]
     return free
@@ -106,26 +106,42 @@ def _within(name: str, declared: Declared, value: float) -> Free:
     return Free(name, value - 10.0 * limits, value + 10.0 * limits, limits / np.sqrt(3.0))
 
 
+def temperature_of(record: FlowRecord, heat: str) -> Array | None:
+    """(n,) K, what is fitted of the thermocouple; None where it is not recorded, or the model holds it constant."""
+    return record.temperature if heat == "energy" else None
+
+
 def problem_of(record: FlowRecord, look: Look, law: str, heat: str) -> _core.TankProblem:
+    """Rows: the pressures, then the temperatures where they are fitted."""
     nothing = np.empty(0)
-    supply = record.supply
+    supply, temperature = record.supply, temperature_of(record, heat)
     return _core.TankProblem(
         time=record.time,
         pressure=record.pressure,
         charge=look.charge,
-        temperature=nothing
-        if record.temperature is None or heat != "energy"
-        else record.temperature,
+        temperature=nothing if temperature is None else temperature,
         supply=nothing if supply is None else smooth_supply(record.time, supply),
         law=law,
         heat=heat,
     )
 
 
-def weight_of(record: FlowRecord, look: Look) -> Array:
+def weight_of(record: FlowRecord, look: Look, heat: str) -> Array:
     """(rows,): one over the noise, which for sparse readings is no less than a thousandth of the way."""
     noise = record.noise or max(look.noise, 1e-4 * float(np.ptp(record.pressure)))
-    return np.full(record.pressure.size, 1.0 / noise)
+    weight = np.full(record.pressure.size, 1.0 / noise)
+    temperature = temperature_of(record, heat)
+    if temperature is None:
+        return weight
+    least = max(1e-4 * float(np.ptp(temperature)), 1e-3)
+    noise = record.temperature_noise or max(reading_noise(temperature), least)
+    return np.concatenate([weight, np.full(temperature.size, 1.0 / noise)])
+
+
+def series_of(record: FlowRecord, heat: str) -> tuple[NDArray[np.intp], ...]:
+    """The rows of each sensor, which has a noise of its own."""
+    rows = np.arange(record.pressure.size)
+    return (rows,) if temperature_of(record, heat) is None else (rows, rows.size + rows)
 
 
 def seen_rows(problem: _core.TankProblem, params: _core.Params, look: Look) -> NDArray[np.bool_]:

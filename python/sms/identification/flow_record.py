@@ -37,6 +37,8 @@ class FlowRecord:
     """Declared, Pa."""
     noise: float | None = None
     """Declared standard deviation of one pressure reading, Pa."""
+    temperature_noise: float | None = None
+    """Declared standard deviation of one temperature reading, K."""
 
 
 @dataclass(frozen=True)

@@ -74,6 +74,11 @@ class FlowResult:
                 "Only one supply pressure: whether C, b and m depend on it cannot be seen; record a "
                 "second one. C, b and m at this supply are identified."
             )
+        if self.heat != "energy" and any(f.record.temperature is not None for f in good):
+            said.append(
+                'tank_temperature is recorded and not used: with chambers = "polytropic" the temperature in the tank '
+                'is constant. To fit it with the pressure, write under [model]: chambers = "energy".'
+            )
         missing = sum(f.record.spool is None for f in good)
         if missing:
             said.append(
@@ -158,7 +163,7 @@ def _fit_dict(f: FlowFit) -> dict[str, Any]:
         },
         "budget": [{"name": c.name, "limits": c.limits, "uncertainty": c.uncertainty} for c in f.budget],
         "combined_uncertainty": f.combined,
-        "noise": found.scale / float(found.weight[0]),
+        "noise": math.sqrt(found.colours[0].variance) / float(found.weight[0]),
         "samples_as_one": found.colours[0].samples_as_one,
         "condition": found.condition,
         "iterations": found.iterations,

@@ -55,6 +55,9 @@ def flow_record(rig: Rig, source: RecordSource, record: Record) -> FlowRecord:
         supply_pressure=condition("supply_pressure"),
         ambient_pressure=ambient,
         noise=rig.signals["tank_pressure"].noise,
+        temperature_noise=rig.signals["tank_temperature"].noise
+        if "tank_temperature" in rig.signals
+        else None,
     )
 
 
