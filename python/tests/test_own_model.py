@@ -214,6 +214,24 @@ def test_the_example_says_what_is_wrong_with_its_tanks(case: str, tmp_path: Path
     assert ('id="empirical"' in text) == (case == "overflow")
 
 
+def test_the_curve_of_an_unknown_is_carried_to_a_record_at_rest() -> None:
+    """The pump runs evenly and both levels stand still below the rim: no curve over a level is to be seen there."""
+    *moving, last = tanks.measured("overflow", 1)
+    rng, time = np.random.default_rng(7), last.signals["time"]
+    upper = (3.32e-6 * 5.0 / 17.9e-6) ** 2 / (2.0 * 9.81)
+    still = {"time": time, "pump_voltage": np.full(time.size, 5.0)}
+    for name, level in (("level_upper", upper), ("level_lower", upper * (17.9 / 17.7) ** 2)):
+        still[name] = level + rng.normal(0.0, 0.4e-3, time.size)
+    records = [*moving, replace(last, signals=still)]
+    answer = own.diagnose_model(tanks.MODEL, records, 60.0, 1, empirical=True)
+    assert answer.verdict == "unknown"
+    assert answer.empirical is not None
+    of_rest = [g for g in answer.empirical.gain if g.record == last.name]
+    assert {g.signal for g in of_rest} == {"level_upper", "level_lower"}
+    assert all(g.extended_rms < 2.0 * 0.4e-3 for g in of_rest)
+    assert answer.sentence.count("balance of the upper tank") == 1
+
+
 def balloon(p: own.Values, x: Array, u: Array) -> Sequence[Array]:
     """V' = (p - V/C) / R of a balloon behind a resistor."""
     return [(u[0] - x[0] / p.compliance) / p.resistance]

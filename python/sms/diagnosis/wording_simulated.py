@@ -72,8 +72,12 @@ def remainder_in_words(left: Unexplained, units: Mapping[str, str]) -> str:
     )
     if not left.practically_significant:
         return f"{said}; that is within what the declared uncertainties make tolerable ({least})."
-    along = spaced(left.along.split(" [")[0])
-    return f"{said}. It sits in {block_in_words(left.equation)}, along {along}."
+    where = f"{said}. It sits in {block_in_words(left.equation)}"
+    if (
+        left.curve is not None and left.curve.equation != left.equation
+    ):  # its signal says nothing of that equation
+        return f"{where}."
+    return f"{where}, along {spaced(left.along.split(' [')[0])}."
 
 
 def still_hidden_in_words(effects: Sequence[StillHidden]) -> str:
@@ -126,12 +130,17 @@ def block_in_words(equation: str) -> str:
 
 
 def shape_in_words(hidden: Hidden) -> str:
-    """As a function of which signal the missing term explains most."""
+    """As a function of which signal the missing term explains most; it may sit in another equation than all functions
+    together.
+    """
     shape = hidden.shape
     signal = spaced(shape.signal.split(" [")[0])
+    share = f"{format_percent(min(shape.share, 1.0))} of the error beyond the noise"
+    if shape.equation == hidden.equation:
+        return f"as a function of {signal} it explains {share}"
     return (
-        f"as a function of {signal} it explains {format_percent(min(shape.share, 1.0))} of the error beyond the noise "
-        f"({shape.equation.replace('_', ' ')})"
+        f"of all functions of one signal, one in the {spaced(shape.equation)} over {signal} explains most, {share}, so "
+        "that the error may arise there as well"
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -129,9 +129,26 @@ def find_channel(database: Database, column: str) -> Channel | None:
         if signal.name == signal_name
     ]
     if len(found) > 1:
-        choices = ", ".join(f"{c.message.name}.{c.signal.name}" for c in found)
-        raise InputError(f"the column '{column}' is in several messages; write one of {choices}")
+        raise InputError(_ambiguous(column, found))
     return found[0] if found else None
+
+
+def _ambiguous(column: str, found: Sequence[Channel]) -> str:
+    """Which name tells them apart; where none does, what to change in the DBC."""
+    choices = list(dict.fromkeys(f"{c.message.name}.{c.signal.name}" for c in found))
+    if len(choices) > 1:
+        return f"the column '{column}' is in several messages; write one of {', '.join(choices)}"
+    message, _, signal = choices[0].partition(".")
+    identifiers = list(dict.fromkeys(f"0x{c.message.frame_id:X}" for c in found))
+    if len(identifiers) > 1:
+        return (
+            f"the column '{column}' is in several messages of the name '{message}' (identifiers "
+            f"{', '.join(identifiers)}), which no column name can tell apart; rename all but one of them in the DBC"
+        )
+    return (
+        f"the column '{column}': message '{message}' of the DBC has {len(found)} signals of the name '{signal}', which "
+        "no column name can tell apart; rename all but one of them in the DBC"
+    )
 
 
 def find_channels(file: Path, database: Database, wanted: Mapping[str, bool]) -> dict[str, Channel]:

@@ -27,6 +27,7 @@ from sms.diagnosis.localisation.signal_functions import (
     points,
     signals_of,
     through_plant,
+    without_leg,
 )
 from sms.diagnosis.remainder import Hidden, Shape
 from sms.diagnosis.thresholds import CURVE_RIDGE, DRAWS, MOST_ROWS
@@ -68,9 +69,12 @@ def bases_of(runs: Runs, nuisance: Nuisance, params: _core.Params) -> list[Basis
             if belong_together(equation.removeprefix("reading of "), signal):
                 columns = _columns(runs, hidden, equation, functions)
                 found.append(Basis(equation, signal, off(columns), at, unit))
+    moving = {without_leg(name) for name in signals}
     for equation, numbers in alike(tuple(runs.kind.hidden)).items():
         unit = list(runs.kind.hidden.values())[numbers[0]]
-        for signal, of_leg in alike_signals(signals).items():
+        for signal, of_leg in alike_signals(runs.inputs).items():
+            if signal not in moving:
+                continue
             at = points(np.concatenate(of_leg))
             if np.ptp(at) == 0.0:
                 continue
@@ -108,11 +112,19 @@ def _columns(runs: Runs, hidden: Array, equation: str, functions: Array) -> Arra
 def with_curve(runs: Runs, nuisance: Nuisance, params: _core.Params, shape: Shape) -> Array:
     """(rows,): how the residual changes, to first order, when the simulation carries a curve as a term.
 
-    As much of it as is confirmed.
+    As much of it as is confirmed. These records need not move the signal that the curve follows: at rest they have its
+    value there.
     """
     carried = shape.confirmed * np.array(shape.value)
-    values = hats(signals_of(runs)[shape.signal], np.array(shape.at)) @ carried
-    return with_terms(runs, nuisance, params, {shape.equation: values})
+    equations = tuple(runs.kind.hidden)
+    if shape.equation in alike(equations):  # the same curve in each leg, over that leg's own signal
+        legs = [equations[number] for number in alike(equations)[shape.equation]]
+        values = alike_signals(runs.inputs)[shape.signal]
+    else:
+        legs, values = [shape.equation], [runs.inputs[shape.signal]]
+    at = np.array(shape.at)
+    terms = {leg: hats(own, at) @ carried for leg, own in zip(legs, values, strict=True)}
+    return with_terms(runs, nuisance, params, terms)
 
 
 def with_terms(
