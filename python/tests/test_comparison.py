@@ -47,6 +47,38 @@ def test_a_late_simulation_has_a_positive_lag() -> None:
     assert compare_signals(TIME, wave(delay=0.123), wave()).lag == pytest.approx(-0.123, abs=2e-3)
 
 
+def test_the_lag_of_a_motion_that_begins_and_ends_at_rest() -> None:
+    """Up to mid-stroke, a while of waves, and down again: the ends that do not move have no say in the lag."""
+
+    def motion(delay: float) -> NDArray[np.float64]:
+        time = TIME - delay
+        faded = np.interp(time, [2.0, 7.0, 33.0, 38.0], [0.0, 1.0, 1.0, 0.0])
+        return faded * (0.2 + 0.02 * np.sin(0.9 * time) + 0.01 * np.sin(1.7 * time + 1.0))
+
+    for delay in (0.3, -0.3, 1.0, 0.0):
+        found = compare_signals(TIME, motion(0.0), 0.9 * motion(delay) + 0.01)
+        assert found.lag == pytest.approx(delay, abs=1e-3)
+        assert found.correlation_at_lag == pytest.approx(1.0, abs=1e-5)
+
+
+def test_of_the_peaks_of_a_periodic_signal_the_nearest_is_its_lag() -> None:
+    noise = np.random.default_rng(6).normal(0.0, 0.2, (2, TIME.size))
+    for period in (0.07, 0.5, 2.03):
+        x, y = (np.sin(2.0 * np.pi * (TIME - d) / period) for d in (0.0, 0.3 * period))
+        assert compare_signals(TIME, x, y).lag == pytest.approx(0.3 * period, abs=2e-3)
+        noisy = compare_signals(TIME, x + noise[0], y + noise[1])
+        assert noisy.lag == pytest.approx(0.3 * period, abs=0.05 * period)
+
+
+def test_the_correlation_at_the_lag_is_eq_7_2_of_the_overlap() -> None:
+    x, y = np.random.default_rng(8).normal(size=(2, 300)).cumsum(axis=1)
+    found = compare_signals(0.1 * np.arange(300.0), x, y)
+    late = round(found.lag / 0.1)
+    overlap = (x[: 300 - late], y[late:]) if late >= 0 else (x[-late:], y[:late])
+    expected = normalised_cross_correlation(*overlap)
+    assert found.correlation_at_lag == pytest.approx(expected, abs=2e-3)
+
+
 def test_the_rise_time_ratio_is_simulated_over_measured() -> None:
     def rise(time_constant: float) -> NDArray[np.float64]:
         return np.where(TIME > 1.0, 1.0 - np.exp(-(TIME - 1.0) / time_constant), 0.0)

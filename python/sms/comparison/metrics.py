@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import coherence as coherence_of
 from scipy.signal import correlate, csd, detrend, welch
 
@@ -19,6 +20,8 @@ from sms.arrays import Array
 
 _SWING = 0.4  # of the whole range: a smaller turn is no flank
 _LONGEST_LAG = 0.25  # of the record
+_EQUAL_PEAKS = 0.1  # of what two signals are not alike at their best lag; peaks within are as good
+_NOTHING = 1e-12  # of a signal's power: what is left of it by rounding
 _EXCITED = 1e-5  # of the largest power density of the source; below it a ratio means nothing
 _SEGMENTS = 8  # of the record, for a frequency response; they overlap by half
 
@@ -181,19 +184,63 @@ def _first_crossing(time: Array, flank: Array, level: float) -> float:
 
 
 def _lag(measured: Array, simulated: Array, step: float) -> tuple[float, float]:
-    """The lag of the largest correlation, refined by a parabola, and the correlation there."""
-    x, y = detrend(measured), detrend(simulated)
-    size = math.sqrt(float(x @ x) * float(y @ y))
-    if not size > 0.0:
+    """The lag of the largest correlation, refined by a parabola, and the correlation there.
+
+    Of peaks that are as good as equal, as those of a periodic signal are, the nearest to 0.
+    """
+    most = max(1, int(_LONGEST_LAG * measured.size))
+    near = _correlation_by_lag(measured, simulated, most)
+    if not np.any(np.isfinite(near)):
         return math.nan, math.nan
-    all_lags = correlate(y, x, "full") / size
-    most = max(1, int(_LONGEST_LAG * x.size))
-    middle = x.size - 1
-    near = all_lags[middle - most : middle + most + 1]
-    best = int(np.argmax(near))
-    shift = 0.0
-    if 0 < best < near.size - 1:
-        left, here, right = (float(v) for v in near[best - 1 : best + 2])
-        bend = left - 2.0 * here + right
-        shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
-    return (best - most + shift) * step, float(near[best])
+    near = np.where(np.isfinite(near), near, -1.0)
+    padded = np.concatenate(([-1.0], near, [-1.0]))
+    peaks = np.flatnonzero((near >= padded[:-2]) & (near >= padded[2:]))
+    shift, height = np.transpose([_vertex(near, int(peak)) for peak in peaks])
+    highest = float(height.max())
+    equal = height >= highest - _EQUAL_PEAKS * (1.0 - highest) - _EQUAL_PEAKS / 100.0
+    lags = (peaks + shift - most)[equal]
+    nearest = int(np.argmin(np.abs(lags)))
+    return float(lags[nearest]) * step, min(float(height[equal][nearest]), 1.0)
+
+
+def _vertex(values: Array, peak: int) -> tuple[float, float]:
+    """How far from a peak's sample the parabola through it and its neighbours is highest, and how high."""
+    here = float(values[peak])
+    if not 0 < peak < values.size - 1:
+        return 0.0, here
+    left, right = float(values[peak - 1]), float(values[peak + 1])
+    bend = left - 2.0 * here + right
+    shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
+    return shift, here - 0.25 * (left - right) * shift
+
+
+def _correlation_by_lag(x: Array, y: Array, most: int) -> Array:
+    """(2 most + 1,): eq. 7.2 of x and of y that is k samples late, k = -most .. most, over their overlap.
+
+    Line and mean are those of the overlap too. Padded with zeros instead, signals that rest at their ends would be
+    most alike where no end is lost, at lag 0.
+    """
+    n = x.size
+    x, y = x - np.mean(x), y - np.mean(y)  # so that sums lose no digits
+    lag = np.arange(-most, most + 1)
+    first, last = np.maximum(-lag, 0), n - np.maximum(lag, 0)  # of x; those of y are `lag` later
+    count = (last - first).astype(float)
+    centre, spread = 0.5 * (first + last - 1), count * (count**2 - 1.0) / 12.0
+
+    def moments(values: Array, late: NDArray[np.int64]) -> tuple[Array, Array, Array]:
+        """Sum, sum of squares, and sum of products with the time from the middle of the overlap."""
+        total, square, product = (
+            np.concatenate(([0.0], np.cumsum(v)))
+            for v in (values, values**2, values * np.arange(n))
+        )
+        a, b = first + late, last + late
+        plain = total[b] - total[a]
+        return plain, square[b] - square[a], product[b] - product[a] - (centre + late) * plain
+
+    (sum_x, square_x, slope_x), (sum_y, square_y, slope_y) = moments(x, 0 * lag), moments(y, lag)
+    both = correlate(y, x, "full")[n - 1 - most : n + most]
+    left_x = square_x - sum_x**2 / count - slope_x**2 / spread
+    left_y = square_y - sum_y**2 / count - slope_y**2 / spread
+    shared = both - sum_x * sum_y / count - slope_x * slope_y / spread
+    known = (left_x > _NOTHING * square_x.max()) & (left_y > _NOTHING * square_y.max())
+    return np.where(known, shared / np.sqrt(np.where(known, left_x * left_y, 1.0)), np.nan)
