@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import io
 import json
@@ -17,15 +18,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from plotly.offline import get_plotlyjs
 from report_support import VERDICTS, cylinder_series, diagnosis, emptied, without_numbers
 from rich.console import Console
 from sms.diagnosis.result import Diagnosis, Verdict
+from sms.report.assets import Place, placed
 from sms.report.console import print_diagnosis
 from sms.report.curves import LINE_POINTS, payload, thin
 from sms.report.diagnosis import report_html
+from sms.report.markup import table
+from sms.report.page import write_page
 from sms.report.verdict import VERDICT_WORDS
 
-LARGEST_PAGE = 8.5e6  # bytes
+LARGEST_PAGE = 4e6  # bytes
+MOST_PRINTED = 6  # pages
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
@@ -194,11 +200,62 @@ def test_a_page_runs_its_own_scripts_and_no_other() -> None:
         if tag == "meta" and a.get("http-equiv") == "Content-Security-Policy"
     ]
     allowed = policy.partition("script-src ")[2].partition(";")[0].split()
-    digests = [hashlib.sha256(s.encode()).digest() for s in page.scripts if not s.startswith("{")]
+    assert [a.get("type") for tag, a in page.tags if tag == "script"] == [
+        "application/json",
+        "application/gzip",
+        None,
+    ]
+    _, packed, own = page.scripts
+    unpacked = gzip.decompress(base64.b64decode(packed)).decode()
+    assert unpacked == get_plotlyjs()
+    digests = [hashlib.sha256(s.encode()).digest() for s in (unpacked, own)]
     assert allowed == [f"'sha256-{base64.b64encode(d).decode()}'" for d in digests]
     without = Page(report_html(replace(diagnosis("combination"), series=())))
     assert not without.scripts
     assert any("script-src 'none'" in (a.get("content") or "") for _, a in without.tags)
+
+
+def test_pages_of_a_folder_share_one_library_beside_them(tmp_path: Path) -> None:
+    with placed(Place.beside):
+        html = report_html(diagnosis("combination"))
+    for name in ("one.html", "two.html"):
+        write_page(tmp_path / name, html)
+    library = [file for file in tmp_path.iterdir() if file.suffix == ".js"]
+    assert [file.read_text() for file in library] == [get_plotlyjs()]
+    assert Page(html).values("src") == {library[0].name}
+    assert len(html.encode()) < 1e6
+    assert Page(html_of("combination")).values("src") == set()
+
+
+def test_a_long_table_is_printed_in_part_and_says_so() -> None:
+    said = table("caption", ("a", "b"), [(str(n), "x") for n in range(9)], on_paper=4)
+    assert said.count("class=screen") == 5
+    assert "The first 4 of 9" in said
+    assert "screen" not in table("caption", ("a", "b"), [("1", "x")], on_paper=4)
+
+
+def browse(tmp_path: Path, file: Path, *flags: str) -> str:
+    assert CHROMIUM is not None
+    usual = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=8000"]
+    usual += [f"--user-data-dir={tmp_path}/profile", *flags]
+    command = [CHROMIUM, *usual, file.as_uri()]
+    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here; apt-get install chromium")
+def test_a_browser_draws_with_the_library_beside_and_prints_few_pages(tmp_path: Path) -> None:
+    with placed(Place.beside):
+        write_page(tmp_path / "report.html", report_html(diagnosis("combination")))
+    drawn = browse(tmp_path, tmp_path / "report.html", "--dump-dom")
+    assert 'class="main-svg"' in drawn
+    printed = tmp_path / "report.pdf"
+    browse(tmp_path, tmp_path / "report.html", f"--print-to-pdf={printed}")
+    pages = len(re.findall(rb"/Type\s*/Page\b", printed.read_bytes()))
+    assert 1 < pages <= MOST_PRINTED
+    (library,) = tmp_path.glob("*.js")
+    library.unlink()
+    alone = browse(tmp_path, tmp_path / "report.html", "--dump-dom")
+    assert "could not be drawn" in alone
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here; apt-get install chromium")
@@ -207,15 +264,10 @@ def test_a_browser_draws_the_page_and_refuses_a_script_that_was_smuggled_in(tmp_
     html = report_html(diagnosis("combination"))
     file = tmp_path / "report.html"
     file.write_text(html.replace("<main>", f"<main>{smuggled}"), encoding="utf-8")
-    assert CHROMIUM is not None
-    flags = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=8000"]
-    flags += [f"--user-data-dir={tmp_path}/profile", "--dump-dom"]
-    done = subprocess.run(
-        [CHROMIUM, *flags, file.as_uri()], capture_output=True, text=True, check=True, timeout=120
-    )
-    assert "it ran" in done.stdout  # the text of the script is there
-    assert "<title>it ran" not in done.stdout
-    assert 'class="main-svg"' in done.stdout  # and the page's own have drawn
+    shown = browse(tmp_path, file, "--dump-dom")
+    assert "it ran" in shown  # the text of the script is there
+    assert "<title>it ran" not in shown
+    assert 'class="main-svg"' in shown  # and the page's own have drawn
 
 
 # ---- the curves ---------------------------------------------------------------------------------

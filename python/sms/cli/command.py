@@ -14,7 +14,9 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms import _core
 from sms.cli import can, identify, limits, mechanism, noise, simulate, study, validate
+from sms.cli.assets import Assets
 from sms.errors import InputError
+from sms.report.assets import Place
 
 app = typer.Typer(
     help="Pneumatic motion platform: what measured data says about its simulation.",
@@ -73,6 +75,7 @@ def diagnose(
     as_json: Annotated[
         bool, typer.Option("--json", help="Print diagnosis.json instead of the table.")
     ] = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """Find what the simulation of a rig gets wrong, name the cause, extend the model, measure the gain.
 

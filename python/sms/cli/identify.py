@@ -12,6 +12,9 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
+from sms.cli.assets import Assets
+from sms.report.assets import Place
+
 if TYPE_CHECKING:
     from sms.io.rig import Declaration
 
@@ -54,6 +57,7 @@ def flow(
         bool, typer.Option(help="Keep C from falling while the valve opens, in the map.")
     ] = True,
     as_json: AsJson = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """C, b and m of a valve from charges and discharges of a tank.
 
@@ -99,7 +103,12 @@ def flow(
     "file with what was identified; every other command reads it), friction/friction.json and "
     "friction/report.html."
 )
-def friction(rig: RigFile, out: Out = Path("friction"), as_json: AsJson = False) -> None:
+def friction(
+    rig: RigFile,
+    out: Out = Path("friction"),
+    as_json: AsJson = False,
+    assets: Assets = Place.inside,
+) -> None:
     """The friction of a cylinder from its displacement and its pressures.
 
     The rig is of kind *cylinder* or *bench*; without a rod force the piston is taken as unloaded. The source's law
@@ -141,6 +150,7 @@ def actuator(
         typer.Option(help="Starting points; the second and later ones are drawn.", min=1, max=50),
     ] = 1,
     as_json: AsJson = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """Mass, dead volumes, mass-flow gain, heat ratios and friction of an actuator, together.
 
@@ -175,7 +185,11 @@ def actuator(
     "identified), spool/spool.json and spool/report.html."
 )
 def spool(
-    rig: RigFile, out: Out = Path("spool"), huber: Huber = 0.0, as_json: AsJson = False
+    rig: RigFile,
+    out: Out = Path("spool"),
+    huber: Huber = 0.0,
+    as_json: AsJson = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """The valve's spool: static law, natural frequency, damping, dead time; centre and dead band.
 
@@ -245,7 +259,8 @@ def _deliver(
 def _write(out: Path, texts: dict[str, str]) -> Sequence[Path]:
     """Each file whole or not at all."""
     from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
+    from sms.report.page import write_page  # noqa: PLC0415
 
     for name, text in texts.items():
-        write_text_atomically(out / name, text)
+        (write_page if name.endswith(".html") else write_text_atomically)(out / name, text)
     return [out / name for name in texts]

@@ -14,9 +14,11 @@ import typer
 
 from sms import StatusError, forward_kinematics, inverse_kinematics
 from sms._core import Params
+from sms.cli.assets import Assets
 from sms.errors import InputError, did_you_mean
 from sms.kinematics import ForwardKinematics, InverseKinematics
 from sms.parameters import PARAMETERS
+from sms.report.assets import Place
 
 AsJson = Annotated[
     bool, typer.Option("--json", help="Print JSON, in SI units, for another program.")
@@ -108,6 +110,7 @@ def workspace(
     ),
     settings: Settings = [],  # noqa: B006 (typer copies it)
     as_json: AsJson = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """What the platform can reach: roll and pitch by height, with the required ranges drawn in.
 
@@ -115,6 +118,7 @@ def workspace(
     supply pressure can carry the payload.
     """
     from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
+    from sms.report.page import write_page  # noqa: PLC0415
     from sms.report.workspace import workspace_html  # noqa: PLC0415
     from sms.workspace_findings import findings, to_dict  # noqa: PLC0415
     from sms.workspace_survey import survey  # noqa: PLC0415
@@ -123,7 +127,7 @@ def workspace(
         surveyed = survey(machine(settings))
     text = json.dumps(to_dict(surveyed), indent=1, ensure_ascii=False, allow_nan=False)
     files = out / "workspace.html", out / "workspace.json"
-    write_text_atomically(files[0], workspace_html(surveyed))
+    write_page(files[0], workspace_html(surveyed))
     write_text_atomically(files[1], text + "\n")
     if as_json:
         print(text)

@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+from sms.cli.assets import Assets
+from sms.report.assets import Place
+
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
@@ -32,6 +35,7 @@ def noise(
         "noise"
     ),
     as_json: Annotated[bool, typer.Option("--json", help="Print noise.json instead.")] = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """The noise of a signal at rest: spread, skewness, kurtosis, colour, and its spectrum.
 
@@ -43,6 +47,7 @@ def noise(
     from sms.io import write_text_atomically  # noqa: PLC0415
     from sms.io.write import check_output_folder  # noqa: PLC0415 (scipy takes a second; --help must not)
     from sms.report.noise import noise_html  # noqa: PLC0415
+    from sms.report.page import write_page  # noqa: PLC0415
 
     check_output_folder(out)
     name, unit, time, values = stretch(record, signal, begin, end)
@@ -50,9 +55,7 @@ def noise(
     said = noise_sentences(found, unit)
     text = json_text({"record": record.name, "signal": name, "unit": unit} | noise_dict(found))
     files = out / "noise.html", out / "noise.json"
-    write_text_atomically(
-        files[0], noise_html(f"{name}, {record.name}", unit, time, values, found, said)
-    )
+    write_page(files[0], noise_html(f"{name}, {record.name}", unit, time, values, found, said))
     write_text_atomically(files[1], text)
     if as_json:
         print(text, end="")

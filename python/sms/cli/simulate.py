@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from sms.cli.assets import Assets
 from sms.cli.mechanism import AsJson, Settings, bad_input
 from sms.errors import InputError
 from sms.parameters import PARAMETERS
 from sms.progress import INTERRUPTED_CODE, progress_bar
+from sms.report.assets import Place
 
 if TYPE_CHECKING:
     from sms.scenario import Scenario
@@ -48,6 +50,7 @@ def simulate(
     ] = None,
     settings: Settings = [],  # noqa: B006 (typer copies it)
     as_json: AsJson = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """Simulate platform, bench or tank: a scenario in, what comes out, and where its limit is.
 
@@ -142,12 +145,13 @@ def sweep(
         str | None,
         typer.Option(metavar="ADDRESS", help='An existing Dask scheduler, "tcp://host:port".'),
     ] = None,
+    assets: Assets = Place.inside,
 ) -> None:
     """Run many variants of a scenario: any parameters, on grids or drawn from distributions.
 
     What is finished is kept at once: after Ctrl-C the same command goes on where it stopped.
     """
-    from sms.io import write_text_atomically  # noqa: PLC0415
+    from sms.report.page import write_page  # noqa: PLC0415
     from sms.report.sweep import sentences, sweep_html  # noqa: PLC0415
     from sms.sweep.plan import load_sweep  # noqa: PLC0415
     from sms.sweep.run import PARTIAL, WHOLE, run_sweep  # noqa: PLC0415
@@ -157,7 +161,7 @@ def sweep(
         kept = f"{out / PARTIAL} keeps what is done, the same command goes on"
         with progress_bar("starting", kept) as tell:
             results = run_sweep(asked, out, workers, scheduler, tell)
-        write_text_atomically(out / "sweep.html", sweep_html(asked, results))
+        write_page(out / "sweep.html", sweep_html(asked, results))
     for sentence in sentences(asked, results):
         print(f"- {sentence}")
     print(f"written: {out / WHOLE}, {out / 'sweep.html'}")

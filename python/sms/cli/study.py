@@ -10,9 +10,11 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from sms.cli.assets import Assets
 from sms.cli.mechanism import AsJson, Settings, bad_input, machine
 from sms.errors import InputError
 from sms.progress import progress_bar
+from sms.report.assets import Place
 
 LOOPS = ("state_feedback", "pid")
 
@@ -55,6 +57,7 @@ def compare(
         Path, typer.Option(help="Folder for comparison.html and comparison.json.")
     ] = Path("comparison"),
     as_json: AsJson = False,
+    assets: Assets = Place.inside,
 ) -> None:
     """How alike a measurement and a simulation are: errors, amplitude, rise time, lag, response.
 
@@ -64,6 +67,7 @@ def compare(
     from sms.comparison.files import WARNING, compare_files  # noqa: PLC0415 (scipy takes a second)
     from sms.io import write_text_atomically  # noqa: PLC0415
     from sms.report.comparison import HEADERS, RATIOS, comparison_html, table_rows  # noqa: PLC0415
+    from sms.report.page import write_page  # noqa: PLC0415
 
     renamed = {}
     for text in pair:
@@ -74,7 +78,7 @@ def compare(
     found = compare_files(measured, simulated, signal, input_name, shift, align, renamed)
     text = json.dumps(found.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
     files = out / "comparison.html", out / "comparison.json"
-    write_text_atomically(files[0], comparison_html(found))
+    write_page(files[0], comparison_html(found))
     write_text_atomically(files[1], text + "\n")
     if as_json:
         print(text)
@@ -131,6 +135,7 @@ def requirements(
 
 def design(
     out: Annotated[Path, typer.Option(help="Folder for design.html.")] = Path("design"),
+    assets: Assets = Place.inside,
 ) -> None:
     """State feedback designed on the simplified plant of section 8.1: gains, root locus, Bode, step.
 
@@ -138,10 +143,10 @@ def design(
     Needs python-control: pip install "sms[control]".
     """
     from sms.design import designs, readings  # noqa: PLC0415
-    from sms.io import write_text_atomically  # noqa: PLC0415
     from sms.report.design import HEADERS, design_html, plant_words, table_rows  # noqa: PLC0415
+    from sms.report.page import write_page  # noqa: PLC0415
 
-    write_text_atomically(out / "design.html", design_html())
+    write_page(out / "design.html", design_html())
     for plant in readings():
         print(plant_words(plant))
         print_table(HEADERS, table_rows(designs(plant)))

@@ -11,7 +11,7 @@ from sms.report.panels import panels_page
 
 
 def actuator_html(result: BenchResult) -> str:
-    """The whole page as text; plotly.js is 4.8 MB of it."""
+    """The whole page as text; plotly.js is 2 MB of it."""
     said = "".join(f"<li>{esc(text)}</li>" for text in sentences(result))
     parts = [
         f'<p class="eyebrow">Actuator identification · {esc(result.rig)}</p>'

@@ -38,7 +38,7 @@ def table_rows(comparison: Comparison) -> list[list[str]]:
 
 
 def comparison_html(comparison: Comparison) -> str:
-    """The whole page, about 5 MB, of which plotly.js is 4.8 MB."""
+    """The whole page, of which plotly.js is 2 MB."""
     figures = [figure for signal in comparison.signals for figure in _figures(comparison, signal)]
     shift = (
         f" The simulation's times were shifted by {comparison.shift:+.3f} s."

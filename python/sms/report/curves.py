@@ -1,7 +1,7 @@
 """The curves of the page as compact JSON: thinned, in display units, numbers as base64 floats.
 
-The whole page stays below about 8 MB however long the records are: a fixed budget of points is
-shared among the series, and what is dropped is chosen so that extremes stay visible.
+The whole page stays below 4 MB however long the records are: a fixed budget of points is shared
+among the series, and what is dropped is chosen so that extremes stay visible.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from sms.diagnosis.result import Diagnosis, Series
 from sms.io.units import split_column_name
 from sms.units_display import DisplayUnit, axis_unit, words
 
-LINE_POINTS = 48_000
+LINE_POINTS = 30_000
 """Points of all lines over time together."""
-SCATTER_POINTS = 100_000
+SCATTER_POINTS = 60_000
 """Points of all residual panels together."""
 MEAN_BINS = 24
 _FEW = 5  # so many different values or fewer are drawn as columns, not as a continuous axis
@@ -136,21 +136,25 @@ def _group(label: str, members: Sequence[Series], limit: int) -> dict[str, Any]:
         "baseline": _pooled(members, lambda s: s.measured - s.baseline) * unit.factor,
         "extended": _pooled(members, lambda s: s.measured - s.extended) * unit.factor,
     }
-    direction = _pooled(members, lambda s: _input(s, "direction"))
+    good = np.logical_and.reduce([np.isfinite(residual) for residual in residuals.values()])
+    residuals = {kind: residual[good] for kind, residual in residuals.items()}
+    rows = int(good.sum())
+    shown = np.linspace(0, max(rows - 1, 0), min(limit, rows)).astype(np.intp)
+    direction = _pooled(members, lambda s: _input(s, "direction"))[good]
     panels = []
     for name in _input_names(members):
         title, si_unit = split_column_name(name)
         axis = axis_unit(si_unit or "1")
-        x = _pooled(members, partial(_input, name=name)) * axis.factor
-        panels.append(_panel(_title(title, axis), x, direction, residuals, limit))
+        x = _pooled(members, partial(_input, name=name))[good] * axis.factor
+        panels.append(_panel(_title(title, axis), x, direction, residuals, shown))
     signal = members[0].signal
     worst = np.abs(np.concatenate(list(residuals.values())))
-    worst = worst[np.isfinite(worst)]
     return {
         "label": label,
         "of": words(signal),
         "error": f"error [{unit.label}]",
         "limit": float(np.quantile(worst, 0.998)) * 1.1 if worst.size else 1.0,
+        "dots": {kind: encode(residual[shown]) for kind, residual in residuals.items()},
         "panels": panels,
     }
 
@@ -168,21 +172,22 @@ def _pooled(members: Sequence[Series], curve: Callable[[Series], Array]) -> Arra
 
 
 def _panel(
-    title: str, x: Array, direction: Array, residuals: Mapping[str, Array], limit: int
+    title: str,
+    x: Array,
+    direction: Array,
+    residuals: Mapping[str, Array],
+    shown: NDArray[np.intp],
 ) -> dict[str, Any]:
-    """One residual panel: thinned dots, and means for each direction of motion apart.
+    """One residual panel: where the dots `shown` lie, and means for each direction of motion apart.
 
     What friction does has opposite signs in the two directions and would cancel in one mean.
     """
     good = np.isfinite(x)
-    for residual in residuals.values():
-        good &= np.isfinite(residual)
-    x, sign = x[good], np.sign(direction[good])
-    values = np.unique(x)
+    values = np.unique(x[good])
     few = 0 < values.size <= _FEW
-    shown = np.linspace(0, max(x.size - 1, 0), min(limit, x.size)).astype(np.intp)
     spread = np.random.default_rng(0).uniform(-0.2, 0.2, shown.size) if few else 0.0
     panel: dict[str, Any] = {"title": title, "x": encode(x[shown] + spread), "few": few}
+    x, sign = x[good], np.sign(direction[good])
     if few:
         panel["ticks"] = values.tolist()
         panel["names"] = [_tick(title, float(value)) for value in values]
@@ -196,7 +201,7 @@ def _panel(
         for side, rows in sides.items():
             centres, heights = _means(x[rows], y[rows], edges)
             means.append({"side": side, "x": encode(centres), "y": encode(heights)})
-        panel[kind] = {"y": encode(y[shown]), "means": means}
+        panel[kind] = {"means": means}
     return panel
 
 

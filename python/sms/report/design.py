@@ -66,7 +66,7 @@ def plant_words(plant: SimplifiedPlant) -> str:
 
 
 def design_html() -> str:
-    """The whole page, about 5 MB, of which plotly.js is 4.8 MB."""
+    """The whole page, of which plotly.js is 2 MB."""
     figures: list[Figure] = []
     parts = []
     for number, plant in enumerate(readings()):

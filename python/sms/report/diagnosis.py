@@ -9,7 +9,7 @@ from sms.report.page import page, plots
 
 
 def report_html(diagnosis: Diagnosis) -> str:
-    """The whole page as text, about 5 to 8 MB, of which plotly.js is 4.8 MB.
+    """The whole page as text, up to 4 MB, of which plotly.js is 2 MB.
 
     The order is that of a reader's questions: what is wrong and how much, what is it worth, why, what
     next; then can I see it, what else was tried, what is left, and what does all of it rest on.

@@ -2,33 +2,9 @@
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("plot-data").textContent);
-  const root = document.documentElement;
-  const touch = matchMedia("(pointer: coarse)").matches;
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const config = { responsive: true, displaylogo: false, displayModeBar: touch ? false : "hover",
-    modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]] };
-
-  const colour = (name) => getComputedStyle(root).getPropertyValue(`--${name}`).trim();
-
   function floats(text) {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
     return new Float32Array(bytes.buffer);
-  }
-
-  function axis(title, more) {
-    const line = { gridcolor: colour("grid"), linecolor: colour("line"), zerolinecolor: colour("line"),
-      tickcolor: colour("line"), automargin: true, title: { text: title, standoff: 8 } };
-    return Object.assign(line, more);
-  }
-
-  function layout(more) {
-    const look = { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
-      margin: { l: 56, r: 12, t: 10, b: 44 }, dragmode: touch ? false : "zoom",
-      modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("quiet"), activecolor: colour("ink") },
-      hoverlabel: { bgcolor: colour("surface"), bordercolor: colour("line"),
-        font: { color: colour("ink") } } };
-    return Object.assign(look, more);
   }
 
   // A row of buttons of which one is pressed; calls `choose` with its number.
@@ -105,7 +81,7 @@
     }
     const shapes = r.floor === null ? [] : [{ type: "rect", xref: "paper", x0: 0, x1: 1, yref: "y2",
       y0: -r.floor, y1: r.floor, line: { width: 0 }, fillcolor: colour("floor"), opacity: 0.3, layer: "below" }];
-    Plotly.react("lines", traces, layout({ shapes, hovermode: view === 0 ? "x unified" : "closest",
+    Plotly.react("lines", traces, look(document.getElementById("lines"), { shapes, hovermode: view === 0 ? "x unified" : "closest",
       xaxis: axis(r.views[view].title, { anchor: "y2", zeroline: false }),
       yaxis: axis(r.signal, { domain: [0.46, 1], zeroline: false }),
       yaxis2: axis(`error [${r.unit}]`, { domain: [0, 0.4] }) }), config);
@@ -113,7 +89,7 @@
 
   // ---- residual against every input -----------------------------------------------------------
   const symbols = { "": "circle", extending: "triangle-up", retracting: "triangle-down" };
-  let group = 0;
+  let group = 0, drawn = false;
 
   function drawResiduals() {
     const g = data.groups[group];
@@ -130,7 +106,7 @@
       const dots = [], means = [];
       for (const kind of models) {
         const p = panel[kind];
-        dots.push({ x, y: floats(p.y), mode: "markers", showlegend: false, hoverinfo: "skip",
+        dots.push({ x, y: floats(g.dots[kind]), mode: "markers", showlegend: false, hoverinfo: "skip",
           marker: { size: 3, opacity: 0.18, color: colour(kind) } });
         for (const mean of p.means) {
           means.push({ x: floats(mean.x), y: floats(mean.y), mode: panel.few ? "markers" : "lines+markers",
@@ -141,7 +117,7 @@
         }
       }
       const ticks = panel.few ? { tickvals: panel.ticks, ticktext: panel.names } : {};
-      Plotly.newPlot(div, [...dots, ...means], layout({ hovermode: "closest",
+      Plotly.newPlot(div, [...dots, ...means], look(div, {
         margin: { l: 48, r: 8, t: 6, b: 40 },
         xaxis: axis(panel.title, { zeroline: false, ...ticks }),
         yaxis: axis(g.error, { range: [-g.limit, g.limit] }) }),
@@ -154,14 +130,15 @@
     choices(document.getElementById("records"), data.records, (number) => {
       record = number;
       view = Math.min(view, data.records[record].views.length - 1);
-      drawLines();
+      if (drawn) drawLines();
     });
     if (data.records.every((r) => r.views.length > 1)) {
       buttons(views, data.records[0].views.map((v) => ({ label: `over ${v.title.split(" [")[0]}` })),
-        (number) => { view = Math.min(number, data.records[record].views.length - 1); drawLines(); });
+        (number) => { view = Math.min(number, data.records[record].views.length - 1); if (drawn) drawLines(); });
     }
     choices(document.getElementById("groups"), data.groups,
-      (number) => { group = number; drawResiduals(); });
-    dark.addEventListener("change", () => { drawLines(); drawResiduals(); });
+      (number) => { group = number; if (drawn) drawResiduals(); });
+    drawn = true;
+    keepDrawn(() => { drawLines(); drawResiduals(); });
   }
 })();

@@ -12,6 +12,7 @@ from sms.diagnosis.result import Diagnosis, as_json
 from sms.io.rig import Declaration
 from sms.io.write import write_extended_rig, write_text_atomically
 from sms.report.diagnosis import report_html
+from sms.report.page import write_page
 
 COVERAGE = 2.0
 """Standard errors that become the declared uncertainty of a found parameter: about 95 percent."""
@@ -23,7 +24,7 @@ def write_diagnosis(diagnosis: Diagnosis, rig: Path, out: Path) -> tuple[Path, .
     text = as_json(diagnosis)
     html = report_html(diagnosis)
     write_extended_rig(rig, extended, extension_of(diagnosis), header_of(diagnosis))
-    write_text_atomically(page, html)
+    write_page(page, html)
     write_text_atomically(data, text)
     if diagnosis.empirical is None:
         return page, data, extended

@@ -30,7 +30,7 @@ _LOOK: dict[str, Colour] = {"charge": "baseline", "discharge": "extended"}
 
 
 def flow_html(result: FlowResult) -> str:
-    """The whole page as text; plotly.js is 4.8 MB of it."""
+    """The whole page as text; plotly.js is 2 MB of it."""
     good = result.good
     figures: dict[str, list[dict[str, Any]]] = {}
     if result.curves:

@@ -25,7 +25,7 @@ _DRAWN = 1500  # samples of a record
 
 
 def friction_html(result: FrictionResult) -> str:
-    """The whole page as text; plotly.js is 4.8 MB of it."""
+    """The whole page as text; plotly.js is 2 MB of it."""
     best = result.law(result.best)
     figures: dict[str, list[dict[str, Any]]] = {
         "map": [_map_view(result, m) for m in result.motions],

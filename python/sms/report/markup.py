@@ -43,27 +43,40 @@ def empty(text: str) -> str:
 
 
 def table(
-    caption: str, headers: Sequence[str], rows: Iterable[Sequence[str]], css: str = ""
+    caption: str,
+    headers: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    css: str = "",
+    on_paper: int | None = None,
 ) -> str:
     """A table whose first column names the row. Cells are HTML; on a phone a row becomes a block.
+
+    on_paper: how many of the rows are printed, the first ones; a line says how many there are.
 
     The roles are spelled out because that change of layout may hide them from screen readers.
     """
     head = "".join(f'<th scope="col" role="columnheader">{esc(text)}</th>' for text in headers)
+    rows = list(rows)
+    printed = len(rows) if on_paper is None else on_paper
     body = "".join(
-        '<tr role="row">'
+        f'<tr role="row"{"" if number < printed else " class=screen"}>'
         + f'<th scope="row" role="rowheader">{row[0]}</th>'
         + "".join(
             f'<td role="cell" data-label="{esc(label)}">{cell}</td>'
             for label, cell in zip(headers[1:], row[1:], strict=True)
         )
         + "</tr>"
-        for row in rows
+        for number, row in enumerate(rows)
+    )
+    left_out = (
+        f'<p class="small paper">The first {printed} of {len(rows)}; all are on this page on a screen.</p>'
+        if printed < len(rows)
+        else ""
     )
     return (
         f'<table role="table" class="{css}"><caption>{esc(caption)}</caption>'
         f'<thead role="rowgroup"><tr role="row">{head}</tr></thead>'
-        f'<tbody role="rowgroup">{body}</tbody></table>'
+        f'<tbody role="rowgroup">{body}</tbody></table>{left_out}'
     )
 
 

@@ -2,18 +2,7 @@
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("plot-data").textContent);
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const touch = matchMedia("(pointer: coarse)").matches;
-  const config = { responsive: true, displaylogo: false, displayModeBar: touch ? false : "hover",
-    modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]],
-    toImageButtonOptions: { format: "png", scale: 2 } };
-  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
   const faint = { measured: 0.5 };
-
-  function axis(title, more) {
-    return Object.assign({ title: { text: title, standoff: 8 }, gridcolor: colour("grid"), linecolor: colour("line"),
-      zerolinecolor: colour("line"), tickcolor: colour("line"), automargin: true }, more);
-  }
 
   function line(trace, number) {
     const suffix = number ? String(number + 1) : "";
@@ -30,7 +19,7 @@
 
   function map(panel) {
     return [{ type: "heatmap", x: panel.names, y: panel.names, z: panel.values, zmin: -1, zmax: 1, xgap: 2, ygap: 2,
-      colorscale: [[0, "#d55e00"], [0.5, dark.matches ? "#2a3036" : "#f4f4f2"], [1, "#0072b2"]],
+      colorscale: [[0, "#d55e00"], [0.5, dark.matches && !onPaper() ? "#2a3036" : "#f4f4f2"], [1, "#0072b2"]],
       text: panel.values.map((row) => row.map((v) => v === null ? "at bound" : v.toFixed(2).replace("-0.00", "0.00"))),
       texttemplate: "%{text}", hovertemplate: "%{y} with %{x}: %{z:.3f}<extra></extra>", colorbar: { thickness: 10 } }];
   }
@@ -41,13 +30,9 @@
     return named.every((trace) => trace.mode === "markers");
   }
 
-  function layout(view) {
-    const out = { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
-      margin: { l: 64, r: 12, t: 12, b: 44 }, dragmode: touch ? false : "zoom",
-      modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("quiet"), activecolor: colour("ink") },
-      hoverlabel: { bgcolor: colour("surface"), bordercolor: colour("line"), font: { color: colour("ink") } },
-      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, itemsizing: dots(view) ? "constant" : "trace" } };
+  function layout(place, view) {
+    const out = look(place, { margin: { l: 64, r: 12, t: 12, b: 44 },
+      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, itemsizing: dots(view) ? "constant" : "trace" } });
     if (view.names) {
       return Object.assign(out, { margin: { l: 64, r: 12, t: 36, b: 44 }, xaxis: axis("", { tickangle: -30 }), yaxis: axis("", { autorange: "reversed" }) });
     }
@@ -71,7 +56,7 @@
   function draw(id, number) {
     const view = data[id][number];
     const traces = view.names ? map(view) : view.panels.flatMap((panel, i) => panel.traces.map((t) => line(t, i)));
-    Plotly.react(`${id}-plot`, traces, layout(view), config);
+    Plotly.react(`${id}-plot`, traces, layout(document.getElementById(`${id}-plot`), view), config);
   }
 
   function choose(id) {
@@ -86,7 +71,5 @@
   }
 
   const shown = Object.keys(data).map((id) => [id, choose(id)]);
-  const drawAll = () => shown.forEach(([id, number]) => draw(id, number()));
-  drawAll();
-  dark.addEventListener("change", drawAll);
+  keepDrawn(() => shown.forEach(([id, number]) => draw(id, number())));
 })();

@@ -8,6 +8,7 @@ from typing import Any
 
 from sms import _core
 from sms.io import write_parquet, write_table, write_text_atomically
+from sms.report.page import write_page
 from sms.report.simulation import simulation_html
 from sms.scenario.findings import Findings
 from sms.scenario.load import Scenario
@@ -42,7 +43,7 @@ def write_run(
         summary, json.dumps(summary_of(scenario, command, record, findings), indent=1) + "\n"
     )
     page = out / "report.html"
-    write_text_atomically(page, simulation_html(scenario, command, record, findings))
+    write_page(page, simulation_html(scenario, command, record, findings))
     for other in ("run", "run.partial"):
         for ending in ("csv", "parquet", "json"):
             old = out / f"{other}.{ending}"

@@ -4,7 +4,6 @@
   const scene = JSON.parse(document.getElementById("plot-data").textContent).scene;
   const place = document.getElementById("scene");
   if (!scene || !place) return;
-  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
   const scale = [[0, "#0072b2"], [0.5, "#e6e0c8"], [1, "#d55e00"]];
   const up = (points) => ({ x: points.map((p) => p[0]), y: points.map((p) => p[1]), z: points.map((p) => -p[2]) });
   const along = (a, b, share) => a.map((v, k) => v + share * (b[k] - v));
@@ -45,15 +44,15 @@
     showlegend: false, textfont: { color: colour("ink"), size: 14 } },
     up([0, 1, 2].map((i) => [1.08 * base[i][0], 1.08 * base[i][1], base[i][2]]))));
 
-  const axis = (title, range) => ({ title: { text: title }, range, color: colour("quiet"), gridcolor: colour("line"),
+  const side = (title, range) => ({ title: { text: title }, range, color: colour("quiet"), gridcolor: colour("line"),
     backgroundcolor: "rgba(0,0,0,0)" });
   const still = { mode: "immediate", transition: { duration: 0 }, frame: { duration: 0, redraw: true } };
   const running = { mode: "immediate", fromcurrent: true, transition: { duration: 0 },
     frame: { duration: 1000 * scene.period, redraw: true } };
   const layout = { height: 560, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)",
     font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: colour("ink") },
-    scene: { aspectmode: "data", xaxis: axis("x forward, m", [-1.8, 1.8]), yaxis: axis("y starboard, m", [-1.8, 1.8]),
-      zaxis: axis("up, m", [0, 2.4]), camera: { eye: { x: 1.15, y: 1.05, z: 0.45 }, center: { x: 0, y: 0, z: -0.14 } } },
+    scene: { aspectmode: "data", xaxis: side("x forward, m", [-1.8, 1.8]), yaxis: side("y starboard, m", [-1.8, 1.8]),
+      zaxis: side("up, m", [0, 2.4]), camera: { eye: { x: 1.15, y: 1.05, z: 0.45 }, center: { x: 0, y: 0, z: -0.14 } } },
     updatemenus: [{ type: "buttons", direction: "left", x: 0, y: 0, xanchor: "left", yanchor: "bottom",
       pad: { l: 8, b: 8 }, showactive: false, bgcolor: colour("surface"), bordercolor: colour("line"),
       buttons: [{ label: "Play", method: "animate", args: [null, running] },

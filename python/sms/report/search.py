@@ -18,6 +18,7 @@ from sms.units_display import (
     words,
 )
 
+_PRINTED, _FEWEST_PRINTED = 12, 3  # rows of a long table on paper; of one round
 _WORST_SHOWN = -0.5
 """Bars of candidates that make things worse than this are cut off here; the number stays."""
 
@@ -33,13 +34,15 @@ def candidates(diagnosis: Diagnosis) -> str:
         "records. A negative reduction makes them worse."
     )
     ordered = sorted(diagnosis.candidates, key=lambda c: c.round)
+    printed = max(_PRINTED // max(len({c.round for c in ordered}), 1), _FEWEST_PRINTED)
     rounds = "".join(
-        _round(number, list(group)) for number, group in groupby(ordered, key=lambda c: c.round)
+        _round(number, list(group), printed)
+        for number, group in groupby(ordered, key=lambda c: c.round)
     )
     return section("candidates", title, rounds, lead)
 
 
-def _round(number: int, tried: list[Candidate]) -> str:
+def _round(number: int, tried: list[Candidate], printed: int) -> str:
     tried.sort(key=lambda c: (not c.accepted, -c.gain if math.isfinite(c.gain) else math.inf))
     lows = [min(c.gain, c.gain_low) for c in tried if math.isfinite(c.gain + c.gain_low)]
     scale = Scale(max(min([0.0, *lows]), _WORST_SHOWN), 1.0)
@@ -73,7 +76,7 @@ def _round(number: int, tried: list[Candidate]) -> str:
     )
     return (
         f"<details open><summary>{summary}</summary>"
-        f"{table(f'Round {number}', headers, rows, 'candidates')}</details>"
+        f"{table(f'Round {number}', headers, rows, 'candidates', printed)}</details>"
     )
 
 
@@ -97,7 +100,7 @@ def not_testable(diagnosis: Diagnosis) -> str:
         )
     lead = "No value is claimed for these effects, and none is excluded."
     rows = [(effect_label(n.effect, n.signal), esc(n.reason)) for n in diagnosis.not_testable]
-    body = table("Effects not testable", ("Effect", "Why not"), rows, "wide-last")
+    body = table("Effects not testable", ("Effect", "Why not"), rows, "wide-last", _PRINTED)
     return section("not-testable", title, body, lead)
 
 
@@ -117,7 +120,7 @@ def findings(diagnosis: Diagnosis) -> str:
         for f in sorted(diagnosis.findings, key=lambda f: _WEIGHTS.get(f.severity, 1))
     ]
     headers = ("Severity", "Location", "Finding", "Remedy")
-    return section("data-check", title, table("Findings", headers, rows, "findings"))
+    return section("data-check", title, table("Findings", headers, rows, "findings", _PRINTED))
 
 
 _WEIGHTS = {"error": 0, "warning": 1, "note": 2}
@@ -135,6 +138,7 @@ def provenance(diagnosis: Diagnosis) -> str:
         "Records",
         ("Record", "Role"),
         [(esc(name), esc(role)) for name, role in diagnosis.records.items()],
+        on_paper=_PRINTED,
     )
     fitted = table(
         "Parameters of the baseline",
@@ -143,6 +147,7 @@ def provenance(diagnosis: Diagnosis) -> str:
             (f"<code>{esc(p.name)}</code>", f'<span class="nowrap">{esc(_before_after(p))}</span>')
             for p in diagnosis.baseline
         ],
+        on_paper=_PRINTED,
     )
     versions = table(
         "Made with",
@@ -156,7 +161,8 @@ def provenance(diagnosis: Diagnosis) -> str:
         fitted if diagnosis.baseline else "",
         versions,
     ]
-    return section("provenance", "Provenance", f'<div class="columns">{"".join(parts)}</div>')
+    columns = "".join(f"<div>{part}</div>" for part in parts if part)
+    return section("provenance", "Provenance", f'<div class="columns">{columns}</div>')
 
 
 def _before_after(p: ParameterValue) -> str:

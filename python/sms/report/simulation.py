@@ -31,7 +31,7 @@ def simulation_html(
     record: Record | TankRecord,
     findings: Findings | TankFindings,
 ) -> str:
-    """The whole page, about 5 MB, of which plotly.js is 4.8 MB."""
+    """The whole page, of which plotly.js is 2 MB."""
     if isinstance(record, TankRecord):
         figures, scene = tank_figures(scenario, record), None
     else:

@@ -39,7 +39,7 @@ SETTLED = 0.03  #: s, after which a spool has followed
 
 
 def spool_html(result: SpoolResult) -> str:
-    """The whole page as text; plotly.js is 4.8 MB of it."""
+    """The whole page as text; plotly.js is 2 MB of it."""
     said = "".join(f"<li>{esc(text)}</li>" for text in sentences(result))
     parts = [
         f'<p class="eyebrow">Spool identification · {esc(result.rig)}</p>'

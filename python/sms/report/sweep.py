@@ -72,7 +72,7 @@ def ranking(sweep: Sweep, results: pd.DataFrame, column: str) -> list[tuple[str,
 
 
 def sweep_html(sweep: Sweep, results: pd.DataFrame) -> str:
-    """The whole page, about 5 MB, of which plotly.js is 4.8 MB."""
+    """The whole page, of which plotly.js is 2 MB."""
     column = main_metric(results)
     name, unit = _split(column)
     shown = axis_unit(unit)

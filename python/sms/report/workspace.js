@@ -2,28 +2,6 @@
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("plot-data").textContent);
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const touch = matchMedia("(pointer: coarse)").matches;
-  const config = { responsive: true, displaylogo: false, displayModeBar: touch ? false : "hover",
-    modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]],
-    toImageButtonOptions: { format: "png", scale: 2 } };
-
-  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-
-  function axis(title, more) {
-    return Object.assign({ title: { text: title, standoff: 8 }, gridcolor: colour("grid"), linecolor: colour("line"),
-      zerolinecolor: colour("line"), tickcolor: colour("line"), automargin: true }, more);
-  }
-
-  function layout(more) {
-    return Object.assign({ paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
-      margin: { l: 56, r: 12, t: 12, b: 44 }, dragmode: touch ? false : "zoom",
-      modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("quiet"), activecolor: colour("ink") },
-      hoverlabel: { bgcolor: colour("surface"), bordercolor: colour("line"), font: { color: colour("ink") } },
-      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 } }, more);
-  }
-
   // From low to high: orange, grey at the middle, blue; both ends safe for colour-blind readers.
   function heightColour(share) {
     const stops = [[213, 94, 0], [128, 128, 128], [0, 114, 178]];
@@ -51,7 +29,7 @@
     const all = [...lines, ...boxes].flatMap((trace) => [...trace.x, ...trace.y]).map(Math.abs);
     const end = Math.max(...all) + 0.7;
     const angles = (more) => Object.assign({ dtick: narrow ? 4 : 2, range: [-end, end], constrain: "domain" }, more);
-    Plotly.react("region", [...areas, ...lines, ...boxes], layout({
+    Plotly.react("region", [...areas, ...lines, ...boxes], look(document.getElementById("region"), {
       xaxis: axis("roll [°]", angles({})), yaxis: axis("pitch [°]", angles({ scaleanchor: "x" })),
       legend: narrow ? { orientation: "h", y: -0.25, yanchor: "top" } : { x: 1.02, y: 1, title: { text: "height" }, traceorder: "normal" },
     }), config);
@@ -62,7 +40,7 @@
     const traces = names.map((name, i) => ({ x: data.height, y: data.by_height[name], mode: "lines", name,
       line: { color: colours[i], width: 2, dash: i > 1 ? "dot" : "solid" },
       hovertemplate: `${name} %{y:.2f}${suffix}<extra></extra>` }));
-    Plotly.react(place, traces, layout({ hovermode: "x unified", xaxis: axis("height [mm]"),
+    Plotly.react(place, traces, look(document.getElementById(place), { hovermode: "x unified", xaxis: axis("height [mm]"),
       yaxis: axis(title, more) }), config);
   }
 
@@ -70,7 +48,7 @@
     const traces = data.boxes.map((box, i) => ({ x: box.height, y: box.margin, mode: "lines", name: box.name,
       line: { color: colour(boxLook[i % 2].name), width: 2, dash: boxLook[i % 2].dash },
       hovertemplate: "%{y:.1f} mm<extra>" + box.name + "</extra>" }));
-    Plotly.react("stroke", traces, layout({ xaxis: axis("height [mm]"),
+    Plotly.react("stroke", traces, look(document.getElementById("stroke"), { xaxis: axis("height [mm]"),
       yaxis: axis("stroke left [mm]", { range: [-60, 20], zerolinecolor: colour("ink"), zerolinewidth: 1.5 }),
       legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, font: { size: 11 } } }), config);
   }
@@ -86,6 +64,5 @@
     drawByHeight("force", "share [%]", ["holding", "accelerating"], { range: [0, 100] }, " %");
   }
 
-  draw();
-  dark.addEventListener("change", draw);
+  keepDrawn(draw);
 })();

@@ -17,7 +17,7 @@ _DRAWN = 0.05  # m, between the heights whose region is drawn
 
 
 def workspace_html(survey: Survey) -> str:
-    """The whole page as text, about 5 MB, of which plotly.js is 4.8 MB."""
+    """The whole page as text, of which plotly.js is 2 MB."""
     figures = (
         _figure("stroke", "Stroke left in the worst corner of a box", "Below zero it does not fit.")
         + _figure(

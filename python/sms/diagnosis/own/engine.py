@@ -33,6 +33,7 @@ from sms.io.rig import DataLayout, Declaration, Rig
 from sms.io.write import write_text_atomically
 from sms.parameters import Parameter
 from sms.report.diagnosis import report_html
+from sms.report.page import write_page
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def write_diagnosis(diagnosis: Diagnosis, out: Path) -> tuple[Path, Path]:
     """report.html and diagnosis.json in the folder `out`, made if need be."""
     out.mkdir(parents=True, exist_ok=True)
     page, data = out / "report.html", out / "diagnosis.json"
-    write_text_atomically(page, report_html(diagnosis))
+    write_page(page, report_html(diagnosis))
     write_text_atomically(data, as_json(diagnosis))
     return page, data
 
