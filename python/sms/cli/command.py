@@ -75,6 +75,13 @@ def diagnose(
     as_json: Annotated[
         bool, typer.Option("--json", help="Print diagnosis.json instead of the table.")
     ] = False,
+    threads: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="Of the core; by default as SMS_THREADS says, else 2. The answer is the same.",
+        ),
+    ] = None,
     assets: Assets = Place.inside,
 ) -> None:
     """Find what the simulation of a rig gets wrong, name the cause, extend the model, measure the gain.
@@ -88,7 +95,10 @@ def diagnose(
     from sms.io.write import check_output_folder  # noqa: PLC0415
     from sms.report.console import print_diagnosis  # noqa: PLC0415
     from sms.report.files import write_diagnosis  # noqa: PLC0415
+    from sms.rigs.threads import use_threads  # noqa: PLC0415
 
+    if threads is not None:
+        use_threads(threads)
     check_output_folder(out)
     columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:

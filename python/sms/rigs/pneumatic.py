@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from typing import TypedDict
 
@@ -13,6 +12,7 @@ from sms.arrays import Array
 from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import without_leg
+from sms.rigs.threads import threads
 
 WINDOW = 1.0
 """s: length of a window."""
@@ -41,7 +41,7 @@ def in_windows(rig: Rig, longest_step: float, runs: Sequence[Run]) -> InWindows:
         "chambers": rig.model.chambers,
         "window": max(run.window or WINDOW for run in runs),
         "longest_step": longest_step,
-        "threads": int(os.environ.get("SMS_THREADS", "2")),
+        "threads": threads(),
     }
 
 

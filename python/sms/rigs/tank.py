@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -17,6 +16,7 @@ from sms.estimation.run import make_run as make_any_run
 from sms.io.records import Record
 from sms.io.rig import Rig
 from sms.rigs.pneumatic import READ_DIRECTLY, record_of_simulation
+from sms.rigs.threads import threads
 
 SHORTEST, LONGEST, PER_RECORD = 1.0, 5.0, 5.0
 """s, s, and how many: a window is a fifth of the longest record. A tank's pressure does not drift as a position does,
@@ -39,7 +39,7 @@ def make_problem(
         chambers=rig.model.chambers,
         window=max(run.window or SHORTEST for run in runs),
         longest_step=LONGEST_STEP,
-        threads=int(os.environ.get("SMS_THREADS", "2")),
+        threads=threads(),
     )
 
 

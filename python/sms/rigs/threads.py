@@ -1,0 +1,27 @@
+"""How many threads the core takes to evaluate the windows of a record, which do not depend on each other."""
+
+from __future__ import annotations
+
+import os
+
+from sms.errors import InputError
+
+VARIABLE = "SMS_THREADS"
+_USUAL = 2
+
+
+def threads() -> int:
+    """As the environment's SMS_THREADS says, 2 without it. InputError where that is no number of threads."""
+    said = os.environ.get(VARIABLE, "").strip()
+    if not said:
+        return _USUAL
+    if not (said.isdecimal() and int(said) > 0):
+        raise InputError(
+            f"{VARIABLE} is '{said}'; write a number of threads, 1 or more, or leave it out"
+        )
+    return int(said)
+
+
+def use_threads(number: int) -> None:
+    """For the rest of this process."""
+    os.environ[VARIABLE] = str(number)
