@@ -44,6 +44,7 @@ from sms.simulation import (
     simulate_platform,
     simulate_tank,
 )
+from sms.views import notebook_progress
 
 __all__ = [
     "Energies",
@@ -77,6 +78,7 @@ __all__ = [
     "jacobian",
     "linearise",
     "mass_matrix",
+    "notebook_progress",
     "pose_jacobian",
     "rod_force",
     "simulate_bench",

@@ -24,6 +24,7 @@ from sms._core import Channel, Params
 from sms.arrays import Array
 from sms.dynamics import mass_model_number
 from sms.kinematics import inverse_kinematics
+from sms.views import Shown
 
 Simulation = _core.BenchSimulation | _core.PlatformSimulation | _core.TankSimulation
 Progress = Callable[[float], None]
@@ -44,7 +45,7 @@ their range; velocities and pressures within 1e-5.
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class Run(Shown):
     """A simulated run; `run["extension"]` is a column, (n,)."""
 
     time: Array  #: s, (n,)

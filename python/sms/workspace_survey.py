@@ -14,6 +14,7 @@ from sms import _core
 from sms._core import OutOfWorkspaceError, Params
 from sms.arrays import Array
 from sms.kinematics import forward_kinematics, height_range
+from sms.views import Shown
 from sms.workspace import conditioning, force_share, joint_angles, reach, rectangle_margin
 
 DEGREE = math.pi / 180.0
@@ -72,7 +73,7 @@ class Worst:
 
 
 @dataclass(frozen=True, slots=True)
-class Survey:
+class Survey(Shown):
     """The workspace of one machine."""
 
     params: Params

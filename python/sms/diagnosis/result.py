@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sms.arrays import Array
 from sms.diagnosis.remainder import FedEquations, Hidden, Remainder, Shape, Symptom, Unexplained
+from sms.views import Shown
 
 Verdict = Literal["no-evidence", "cause", "class", "combination", "unknown", "data-fault"]
 
@@ -216,7 +217,7 @@ class Series:
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Diagnosis(Shown):
     """The whole answer."""
 
     rig: str

@@ -14,6 +14,7 @@ from sms.callbacks import Progress
 from sms.identification.bench_fit import BenchFit, fit_bench
 from sms.identification.bench_records import load_bench
 from sms.io.rig import Rig
+from sms.views import Shown
 
 ACTUATOR = (
     "moving_mass",
@@ -34,7 +35,7 @@ ACTUATOR = (
 
 
 @dataclass(frozen=True)
-class BenchResult:
+class BenchResult(Shown):
     """The answer of a fit of the bench, for a page and for files."""
 
     subject: str

@@ -18,13 +18,14 @@ from sms.identification.flow_map import MapCurve, SupplyComparison, compare_supp
 from sms.identification.flow_problem import COMPONENT, SYMBOL
 from sms.identification.flow_rig import supplies
 from sms.io.records import Finding
+from sms.views import Shown
 
 COVERAGE = 2.0
 """Standard uncertainties of what the parameter file states, about 95 percent."""
 
 
 @dataclass(frozen=True)
-class FlowResult:
+class FlowResult(Shown):
     """Everything `sms identify flow` found."""
 
     title: str

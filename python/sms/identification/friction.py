@@ -22,13 +22,14 @@ from sms.io.records import Finding, Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.parameters import PARAMETERS
 from sms.rigs.cylinder import Motion, prepare
+from sms.views import Shown
 
 SPACING = 5e-3
 """s: samples closer than this are thinned; the motion is a mean over 0.15 s, they say the same."""
 
 
 @dataclass(frozen=True)
-class FrictionResult:
+class FrictionResult(Shown):
     """Everything `sms identify friction` found."""
 
     title: str

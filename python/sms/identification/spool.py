@@ -25,6 +25,7 @@ from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.io.check import check_record, raise_if_unusable
 from sms.io.records import Finding, Record, load_record
 from sms.io.rig import Rig, load_rig
+from sms.views import Shown
 
 BY_PRESSURE = (
     "valve_centre",
@@ -102,7 +103,7 @@ class PositionFit:
 
 
 @dataclass(frozen=True)
-class SpoolResult:
+class SpoolResult(Shown):
     """Everything `sms identify spool` found."""
 
     title: str

@@ -7,11 +7,16 @@ from sms.identification.actuator import BenchResult
 from sms.identification.bench_result import sentences
 from sms.report.bench_fit import bench_parts
 from sms.report.markup import esc, section
-from sms.report.panels import panels_page
+from sms.report.panels import PanelsPage
 
 
 def actuator_html(result: BenchResult) -> str:
     """The whole page as text; plotly.js is 2 MB of it."""
+    return actuator_page(result).html
+
+
+def actuator_page(result: BenchResult) -> PanelsPage:
+    """Its parts, and the figures that they hold."""
     said = "".join(f"<li>{esc(text)}</li>" for text in sentences(result))
     parts = [
         f'<p class="eyebrow">Actuator identification · {esc(result.rig)}</p>'
@@ -28,4 +33,4 @@ def actuator_html(result: BenchResult) -> str:
         f"<p class='small'>sms {_core.__version__}; {found.starts} starts, {found.minima} minima; "
         f"condition number {found.condition:.3g}</p>"
     )
-    return panels_page(f"Actuator: {result.title}", "".join(parts), figures)
+    return PanelsPage(f"Actuator: {result.title}", parts, figures)

@@ -15,10 +15,10 @@ from sms.identification.flow_result import FlowResult
 from sms.report.markup import esc, section, table
 from sms.report.panels import (
     Colour,
+    PanelsPage,
     correlation_view,
     figure,
     panel,
-    panels_page,
     thinned,
     trace,
     view,
@@ -31,6 +31,11 @@ _LOOK: dict[str, Colour] = {"charge": "baseline", "discharge": "extended"}
 
 def flow_html(result: FlowResult) -> str:
     """The whole page as text; plotly.js is 2 MB of it."""
+    return flow_page(result).html
+
+
+def flow_page(result: FlowResult) -> PanelsPage:
+    """Its parts, and the figures that they hold."""
     good = result.good
     figures: dict[str, list[dict[str, Any]]] = {}
     if result.curves:
@@ -78,7 +83,7 @@ def flow_html(result: FlowResult) -> str:
         else "tank: full energy equation"
     )
     parts.append(f"<p class='small'>sms {_core.__version__}; {heat}</p>")
-    return panels_page(f"Flow: {result.title}", "".join(parts), figures)
+    return PanelsPage(f"Flow: {result.title}", parts, figures)
 
 
 def _map_views(result: FlowResult) -> list[dict[str, Any]]:

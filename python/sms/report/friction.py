@@ -13,7 +13,7 @@ from sms.identification.friction_map import friction_map, law_over_record
 from sms.identification.friction_result import sentences
 from sms.parameters import PARAMETERS
 from sms.report.markup import esc, section, table
-from sms.report.panels import Colour, correlation_view, figure, panel, panels_page, trace, view
+from sms.report.panels import Colour, PanelsPage, correlation_view, figure, panel, trace, view
 from sms.rigs.cylinder import Motion
 from sms.units_display import display_unit, format_estimate, format_quantity, words
 
@@ -26,6 +26,11 @@ _DRAWN = 1500  # samples of a record
 
 def friction_html(result: FrictionResult) -> str:
     """The whole page as text; plotly.js is 2 MB of it."""
+    return friction_page(result).html
+
+
+def friction_page(result: FrictionResult) -> PanelsPage:
+    """Its parts, and the figures that they hold."""
     best = result.law(result.best)
     figures: dict[str, list[dict[str, Any]]] = {
         "map": [_map_view(result, m) for m in result.motions],
@@ -75,7 +80,7 @@ def friction_html(result: FrictionResult) -> str:
     parts.append(
         f"<p class='small'>sms {_core.__version__}; condition number {best.found.condition:.3g}</p>"
     )
-    return panels_page(f"Friction: {result.title}", "".join(parts), figures)
+    return PanelsPage(f"Friction: {result.title}", parts, figures)
 
 
 def _map_view(result: FrictionResult, motion: Motion) -> dict[str, Any]:

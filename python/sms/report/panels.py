@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -75,6 +76,25 @@ def figure(
         f'aria-label="{esc(title)}"></div>'
     )
     return section(identifier, title, choice + plot, lead)
+
+
+@dataclass(frozen=True)
+class PanelsPage:
+    """A page of panels before it is written: what a notebook takes from it too."""
+
+    title: str
+    parts: Sequence[str]
+    figures: Mapping[str, Sequence[Mapping[str, Any]]]
+
+    @property
+    def html(self) -> str:
+        """The whole page."""
+        return panels_page(self.title, "".join(self.parts), self.figures)
+
+    @property
+    def without_figures(self) -> str:
+        """Sentences and tables."""
+        return "".join(part for part in self.parts if 'class="panels' not in part)
 
 
 def panels_page(title: str, body: str, figures: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:

@@ -23,10 +23,10 @@ from sms.report.bench_fit import bench_parts
 from sms.report.markup import esc, section, table
 from sms.report.panels import (
     Colour,
+    PanelsPage,
     correlation_view,
     figure,
     panel,
-    panels_page,
     thinned,
     trace,
     view,
@@ -40,6 +40,11 @@ SETTLED = 0.03  #: s, after which a spool has followed
 
 def spool_html(result: SpoolResult) -> str:
     """The whole page as text; plotly.js is 2 MB of it."""
+    return spool_page(result).html
+
+
+def spool_page(result: SpoolResult) -> PanelsPage:
+    """Its parts, and the figures that they hold."""
     said = "".join(f"<li>{esc(text)}</li>" for text in sentences(result))
     parts = [
         f'<p class="eyebrow">Spool identification · {esc(result.rig)}</p>'
@@ -56,7 +61,7 @@ def spool_html(result: SpoolResult) -> str:
         items = "".join(f"<li>{esc(str(f))}</li>" for f in result.findings)
         parts.append(section("data-check", "Data check", f"<ul class='said'>{items}</ul>"))
     parts.append(f"<p class='small'>sms {_core.__version__}</p>")
-    return panels_page(f"Spool: {result.title}", "".join(parts), figures)
+    return PanelsPage(f"Spool: {result.title}", parts, figures)
 
 
 def _position_parts(fit: PositionFit, figures: dict[str, list[dict[str, Any]]]) -> list[str]:

@@ -32,9 +32,7 @@ def workspace_html(survey: Survey) -> str:
         )
     )
     body = (
-        "<main><h1>What the platform can reach</h1>"
-        f"<ul class='findings-list'>{''.join(f'<li>{esc(text)}</li>' for text in findings(survey))}"
-        "</ul>"
+        f"<main>{_sentences(survey)}"
         + section(
             "region-part",
             "Roll and pitch by height",
@@ -56,6 +54,16 @@ def workspace_html(survey: Survey) -> str:
     )
 
 
+def sentences_and_numbers(survey: Survey) -> str:
+    """The page without its figures."""
+    return _sentences(survey) + _numbers(survey)
+
+
+def _sentences(survey: Survey) -> str:
+    said = "".join(f"<li>{esc(text)}</li>" for text in findings(survey))
+    return f"<h1>What the platform can reach</h1><ul class='findings-list'>{said}</ul>"
+
+
 def _figure(name: str, title: str, note: str) -> str:
     return (
         f"<figure><figcaption><h3>{esc(title)}</h3><p class='small'>{esc(note)}</p></figcaption>"
@@ -63,7 +71,7 @@ def _figure(name: str, title: str, note: str) -> str:
     )
 
 
-def _drawn(survey: Survey) -> list[int]:
+def drawn_heights(survey: Survey) -> list[int]:
     """The heights nearest to multiples of _DRAWN, or the middle one."""
     low, high = survey.heights[0], survey.heights[-1]
     wanted = _DRAWN * np.arange(np.ceil(low / _DRAWN), np.floor(high / _DRAWN) + 1)
@@ -87,7 +95,7 @@ def _numbers(survey: Survey) -> str:
             f"{survey.worst.link_condition[row]:.2f}",
             f"{survey.worst.holding_share[row]:.0%}",
         )
-        for row in _drawn(survey)
+        for row in drawn_heights(survey)
     ]
     headers = (
         "height",
@@ -104,7 +112,7 @@ def _payload(survey: Survey) -> dict[str, Any]:
     """What workspace.js draws: mm and degrees, NaN as null."""
     roll, pitch = survey.alone("roll"), survey.alone("pitch")
     worst = survey.worst
-    drawn = _drawn(survey)
+    drawn = drawn_heights(survey)
     best = min(drawn, key=lambda row: abs(survey.heights[row] - survey.fits[0].best_height))
     by_height = {
         "roll −": np.degrees(-roll[0]),
