@@ -10,9 +10,18 @@ import pytest
 from plant_support import write_platform
 from sms import _core
 from sms.diagnosis import diagnose
-from sms.diagnosis.effects.catalogue import catalogue
-from sms.diagnosis.localisation.signal_functions import alike, alike_signals, belong_together
+from sms.diagnosis.effects.catalogue import catalogue, effects_of
+from sms.diagnosis.hypothesis import baseline_hypothesis, fit, nuisance_of
+from sms.diagnosis.localisation import unknown_inputs
+from sms.diagnosis.localisation.signal_functions import (
+    alike,
+    alike_signals,
+    belong_together,
+    signals_of,
+)
+from sms.diagnosis.localisation.unknown_inputs import bases_of, with_curve, with_terms
 from sms.diagnosis.preparation import make_data
+from sms.diagnosis.remainder import Shape
 from sms.io.records import load_record
 from sms.io.rig import load_rig
 from sms.parameters import LEG_PARAMETERS, PARAMETERS
@@ -72,6 +81,32 @@ def test_a_term_of_one_leg_follows_that_leg_and_what_has_none() -> None:
     found = alike_signals({"velocity_1 [m/s]": one, "velocity_2 [m/s]": other, "time [s]": one})
     assert [v is one for v in found["velocity [m/s]"]] == [True, False]
     assert len(found["time [s]"]) == 3
+
+
+def test_a_curve_of_all_legs_acts_in_each_over_its_own_signal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where one leg rests, and its signal says nothing of where a term may lie."""
+    rig = load_rig(write_platform(tmp_path, 4, {}, 2.2))
+    data = make_data(rig, [load_record(rig, source) for source in rig.records])
+    runs = data.identify
+    fitted = fit(baseline_hypothesis(data, effects_of(rig)), runs, most_steps=1)
+    nuisance, at = nuisance_of(fitted), (-0.1, 0.0, 0.1)
+    shape = Shape("force", "velocity [m/s]", at, (-5.0, 0.0, 5.0), (0.0,) * 3, "N", 0.5, 0.8)
+    values = 0.8 * np.array(shape.value)
+    terms = {
+        f"force of leg {leg}": np.interp(runs.inputs[f"velocity_{leg} [m/s]"], at, values)
+        for leg in (1, 2, 3)
+    }
+    carried = with_curve(runs, nuisance, fitted.params, shape)
+    assert np.linalg.norm(carried) > 1.0
+    wanted = with_terms(runs, nuisance, fitted.params, terms)
+    np.testing.assert_allclose(carried, wanted, atol=1e-6 * np.abs(wanted).max())
+    moving = {name: v for name, v in signals_of(runs).items() if name != "velocity_1 [m/s]"}
+    monkeypatch.setattr(unknown_inputs, "signals_of", lambda runs: moving)
+    named = {(b.equation, b.signal) for b in bases_of(runs, nuisance, fitted.params)}
+    assert ("force", "velocity [m/s]") in named
+    assert ("force of leg 1", "velocity_1 [m/s]") not in named
 
 
 # ---- the whole method ------------------------------------------------------------------------------
