@@ -79,7 +79,7 @@ def diagnose(
         int | None,
         typer.Option(
             min=1,
-            help="Of the core; by default as SMS_THREADS says, else 2. The answer is the same.",
+            help="Of the core; by default as SMS_THREADS says, else 2.",
         ),
     ] = None,
     assets: Assets = Place.inside,
