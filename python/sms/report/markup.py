@@ -42,6 +42,13 @@ def empty(text: str) -> str:
     return f'<p class="empty">{esc(text)}</p>'
 
 
+def printed_in_part(printed: int, rows: int) -> str:
+    """What stands on paper below a table of which the first rows are printed only; nothing where all are."""
+    if printed >= rows:
+        return ""
+    return f'<p class="small paper">The first {printed} of {rows}; all are on this page on a screen.</p>'
+
+
 def table(
     caption: str,
     headers: Sequence[str],
@@ -68,11 +75,7 @@ def table(
         + "</tr>"
         for number, row in enumerate(rows)
     )
-    left_out = (
-        f'<p class="small paper">The first {printed} of {len(rows)}; all are on this page on a screen.</p>'
-        if printed < len(rows)
-        else ""
-    )
+    left_out = printed_in_part(printed, len(rows))
     return (
         f'<table role="table" class="{css}"><caption>{esc(caption)}</caption>'
         f'<thead role="rowgroup"><tr role="row">{head}</tr></thead>'

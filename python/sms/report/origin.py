@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from sms.diagnosis.remainder import ErrorCurve, FedEquations, Hidden, Shape
 from sms.diagnosis.result import Diagnosis
 from sms.diagnosis.wording_simulated import two_ways
-from sms.report.markup import Scale, bar, esc, section, table
+from sms.report.markup import Scale, bar, esc, printed_in_part, section, table
 from sms.report.worth import gain_table
 from sms.units_display import axis_unit, capital, format_aligned, format_percent, words
 
 WIDTH, HEIGHT = 560, 240
+PRINTED = 7
+"""Equations of a table on paper: all that a bench has."""
 LEFT, TOP, MARGIN = 60, 28, 40
 """Free on the left and above; below, and on the right."""
 
@@ -61,13 +63,16 @@ def _empirical(diagnosis: Diagnosis) -> str:
 def _shares(hidden: Hidden) -> str:
     scale = Scale(0.0, 1.0)
     rows = "".join(
-        f'<tr><th scope="row">{esc(capital(words(name)))}</th>'
+        f'<tr{"" if number < PRINTED else " class=screen"}><th scope="row">{esc(capital(words(name)))}</th>'
         f"<td>{bar(scale, max(share, 0.0), 'baseline', (max(low, 0.0), max(high, 0.0)))}</td>"
         f'<td class="number">{esc(format_percent(max(share, 0.0)))}</td></tr>'
-        for name, (share, low, high) in sorted(hidden.shares.items(), key=lambda item: -item[1][0])
+        for number, (name, (share, low, high)) in enumerate(
+            sorted(hidden.shares.items(), key=lambda item: -item[1][0])
+        )
     )
     head = "".join(f'<th scope="col">{text}</th>' for text in ("Equation", "", "Takes alone"))
-    return f'<table class="shares"><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
+    shown = f'<table class="shares"><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
+    return shown + printed_in_part(PRINTED, len(hidden.shares))
 
 
 def _fed(fed: FedEquations, hidden: Hidden) -> str:
@@ -96,6 +101,7 @@ def _fed(fed: FedEquations, hidden: Hidden) -> str:
         ("Equation", "", "Share", "RMS error (noise)", "Error / noise"),
         rows,
         "shares",
+        PRINTED,
     )
     curves = [c for c in fed.curves if c.equation == fed.equation]
     figures = "".join(map(_over_time, curves)) if fed.beyond_noise else ""

@@ -18,7 +18,7 @@ from sms.units_display import (
     words,
 )
 
-_PRINTED, _FEWEST_PRINTED = 12, 3  # rows of a long table on paper; of one round
+_PRINTED, _FEWEST_PRINTED = 10, 3  # rows of a long table on paper; of one round
 _WORST_SHOWN = -0.5
 """Bars of candidates that make things worse than this are cut off here; the number stays."""
 

@@ -77,7 +77,7 @@ def _symptoms(diagnosis: Diagnosis) -> str:
         "beyond the noise occurs, and the frequency below which 80 % of its power lies"
     )
     headers = ("Signal", "RMS error", "When largest", "Frequencies")
-    return f'<div id="symptoms"><h2>What is wrong</h2>{table(caption, headers, rows, "symptoms")}</div>'
+    return f'<div id="symptoms"><h2>What is wrong</h2>{table(caption, headers, rows, "symptoms", on_paper=6)}</div>'
 
 
 def conclusion(diagnosis: Diagnosis) -> str:

@@ -9,7 +9,17 @@ from sms.diagnosis.remainder import Remainder, Unexplained
 from sms.diagnosis.result import Diagnosis, FreeRun, Gain, InUse
 from sms.diagnosis.wording import ARRANGED
 from sms.diagnosis.wording_simulated import free_run_in_words, worst_free_runs
-from sms.report.markup import Scale, bar, effect_label, empty, esc, section, swatch, table
+from sms.report.markup import (
+    Scale,
+    bar,
+    effect_label,
+    empty,
+    esc,
+    printed_in_part,
+    section,
+    swatch,
+    table,
+)
 from sms.units_display import (
     capital,
     format_aligned,
@@ -36,6 +46,7 @@ _LEGEND = (
 
 
 _FLOOR_OF_A_SIMULATION = "what changes from sample to sample, which no model can explain"
+PRINTED = 4  # records and signals on paper; paper.css knows the number too
 TESTED = ' <span class="role">test: took no part in any choice</span>'
 
 
@@ -111,7 +122,7 @@ def _free_run_table(runs: Sequence[FreeRun], extended: bool) -> str:
         "RMS error of a free run over the whole record, from the initial state that fits it best"
     )
     head = ("Record and signal", "Baseline", "Extended")
-    return table(caption, head if extended else head[:2], rows, "in-use")
+    return table(caption, head if extended else head[:2], rows, "in-use", on_paper=PRINTED)
 
 
 def _in_use(quantities: Sequence[InUse]) -> str:
@@ -143,7 +154,7 @@ def gain_table(gains: Sequence[Gain], extended: str) -> str:
     interval = "; whisker and brackets: 95 % interval" if extended else ""
     return (
         '<table class="gain"><caption>RMS error on records that the fit has not seen'
-        f"{interval}</caption>{rows}</table>"
+        f"{interval}</caption>{rows}</table>{printed_in_part(PRINTED, len(gains))}"
     )
 
 
