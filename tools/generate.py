@@ -1,4 +1,5 @@
-"""What the repository holds but nobody writes: two tables of its documentation, the frames of the bus, a stub.
+"""What the repository holds but nobody writes: two tables of its documentation, the frames of the bus, a stub, two
+schemas.
 
 `./dev docs` regenerates them; `python -m tools.generate --check` says whether that is due.
 """
@@ -13,7 +14,7 @@ import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from sms import _core
+from sms import _core, schemas
 
 from tools.generate_frames import frames
 
@@ -101,6 +102,8 @@ GENERATED: Mapping[str, Callable[[], str]] = {
     "docs/equations.md": equation_table,
     "libsms/include/sms/frames.def": frames,
     "python/sms/_core.pyi": stub,
+    "python/sms/schemas/rig.schema.json": lambda: schemas.made("rig"),
+    "python/sms/schemas/scenario.schema.json": lambda: schemas.made("scenario"),
 }
 
 

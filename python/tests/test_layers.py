@@ -13,7 +13,8 @@ import sms
 
 ROOT = Path(sms.__file__).parent
 FORBIDDEN = {
-    "io": ("link", "estimation", "rigs", "identification", "diagnosis", "report", "cli"),
+    "io": ("draft", "link", "estimation", "rigs", "identification", "diagnosis", "report", "cli"),
+    "draft": ("link", "estimation", "rigs", "identification", "diagnosis", "report", "cli"),
     "estimation": ("rigs", "identification", "diagnosis", "report", "cli"),
     "rigs": ("identification", "diagnosis", "report", "cli"),
     "identification": ("diagnosis", "report", "cli"),

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms import _core
-from sms.cli import can, identify, limits, mechanism, noise, simulate, study, validate
+from sms.cli import can, identify, limits, mechanism, new, noise, schema, simulate, study, validate
 from sms.cli.assets import Assets
 from sms.errors import InputError
 from sms.report.assets import Place
@@ -127,6 +127,8 @@ simulate.register(app)
 study.register(app)
 can.register(app)
 noise.register(app)
+new.register(app)
+schema.register(app)
 validate.register(app)
 
 

@@ -21,6 +21,7 @@ from pydantic import (
     PlainSerializer,
     PlainValidator,
     ValidationError,
+    WithJsonSchema,
 )
 
 from sms.errors import InputError, did_you_mean, nearest
@@ -45,7 +46,10 @@ def is_finite(number: float) -> bool:
 
 
 TextOrNumber = Annotated[
-    str | float, PlainValidator(_text_or_number), PlainSerializer(lambda value: value)
+    str | float,
+    PlainValidator(_text_or_number),
+    PlainSerializer(lambda value: value),
+    WithJsonSchema({"type": ["string", "number"]}),
 ]
 
 

@@ -47,6 +47,23 @@ def is_can_log(file: Path) -> bool:
     return re.match(_CAN_OPENINGS[ending], first) is not None
 
 
+def delimiter_of(file: Path) -> str:
+    """What most likely separates the columns of a file; "comma" for what is no text.
+
+    The separator that finds as many cells in the header as in the numbers below it: decimal commas do not.
+    """
+    if ending_of(file) not in TEXT_ENDINGS or is_can_log(file):
+        return "comma"
+    lines = [line for line in _decoded(file).splitlines() if line.strip(" \t,;")]
+    looked_at = [line for line in lines if not line.lstrip().startswith("#")][:LOOKED_AT]
+
+    def cells(name: str) -> tuple[bool, int]:
+        counts = [len(_split(line, name)) for line in looked_at] or [1]
+        return counts[0] > 1 and len(set(counts)) == 1, min(counts)
+
+    return max(("tab", "semicolon", "comma", "whitespace"), key=lambda n: (*cells(n), n == "comma"))
+
+
 def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
     """Read a file by its ending; of a CAN log everything that the controller told, see can_logs.py.
 
@@ -155,8 +172,9 @@ _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?|[+-]?\d+")
 
 
 def _has_decimal_commas(cells: Sequence[str]) -> bool:
-    """Whether numbers are written as in "0,005": some are, and all others are whole numbers."""
-    return any("," in cell for cell in cells) and all(map(_DECIMAL_COMMA.fullmatch, cells))
+    """Whether numbers are written as in "0,005": some are, and all others are whole numbers, or missing."""
+    filled = [cell for cell in cells if cell]
+    return any("," in cell for cell in filled) and all(map(_DECIMAL_COMMA.fullmatch, filled))
 
 
 def _is_number(cell: str) -> bool:
