@@ -161,7 +161,10 @@ def test_a_foreign_tank_whose_sensors_read_against_ambient(tmp_path: Path) -> No
         "p line": ("supply_pressure [Pa]", 1e-5, -86e3),
     }
     names = foreign(tmp_path, files, columns, sep="\t")
-    assert "gauge: down to 0.10 bar" in " ".join(written(tmp_path, "tank", *names).split())
+    said = " ".join(written(tmp_path, "tank", *names).split())
+    assert "gauge: down to 0.10 bar" in said and "the air outside is taken to have" in said
+    ambient = ("--force", "--parameter", "ambient_pressure=86 kPa")
+    assert "the air outside" not in written(tmp_path, "tank", *names, *ambient)
     rig = load_rig(tmp_path / "rig.toml")
     assert rig.signals["tank_pressure"].gauge and rig.signals["supply_pressure"].gauge
     assert rig.signals["tank_pressure"].unit == "bar"

@@ -96,6 +96,8 @@ def new(
     schema = out.with_name(SCHEMA)
     if not schema.exists() or force:
         write_text_atomically(schema, shipped("rig"))
+    if any(s.gauge for s in draft.signals) and "ambient_pressure" not in given.parameter:
+        warnings.append(_without_ambient())
     _say(draft, warnings)
     print(f"written: {out}, with {SCHEMA} beside it")
 
@@ -147,6 +149,19 @@ def _accepted(draft: Draft, out: Path) -> list[str]:
     kind_of(rig)
     _, findings = read_and_check(rig)
     return [str(f) for f in findings if f.severity != "note"]
+
+
+def _without_ambient() -> str:
+    """What gauge readings are taken against where nobody has said it."""
+    from sms.parameters import PARAMETERS  # noqa: PLC0415
+    from sms.units_display import format_quantity  # noqa: PLC0415
+
+    usual = PARAMETERS["ambient_pressure"]
+    taken = format_quantity(usual.default, usual.unit, "ambient_pressure")
+    return (
+        f"pressures are gauge, and the air outside is taken to have {taken}; where that is not so, write it down: "
+        '--parameter ambient_pressure="101.3 kPa"'
+    )
 
 
 def _say(draft: Draft, warnings: list[str]) -> None:
