@@ -7,14 +7,14 @@
 namespace sms_python {
 namespace {
 
-using Array = py::array_t<double, py::array::forcecast>;
+using Samples = py::array_t<double, py::array::forcecast>;
 using Equation = double (*)(const Params&, const sms::Piston<double>&);
 
 void def_of_piston(py::module_& m, const char* name, Equation equation, const char* doc) {
   m.def(
       name,
-      [equation](const Params& params, const Array& extension, const Array& velocity, const Array& acceleration,
-                 const Array& pressure_lower, const Array& pressure_upper) {
+      [equation](const Params& params, const Samples& extension, const Samples& velocity, const Samples& acceleration,
+                 const Samples& pressure_lower, const Samples& pressure_upper) {
         const auto one = [&params, equation](double x, double v, double a, double lower, double upper) {
           const sms::Piston<double> piston = {x, v, a, lower, upper};
           return sms::is_finite(piston) ? equation(params, piston) : std::numeric_limits<double>::quiet_NaN();
@@ -32,7 +32,7 @@ void bind_cylinder(py::module_& m) {
   def_of_piston(m, "rod_force", &sms::rod_force<double>, "Force of the rod on its load, N (eq. 6.4).");
   m.def(
       "friction_stribeck",
-      [](const Params& params, const Array& velocity) {
+      [](const Params& params, const Samples& velocity) {
         const auto one = [&params](double v) {
           return sms::is_finite(v) ? sms::friction_stribeck(params, v) : std::numeric_limits<double>::quiet_NaN();
         };
