@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 import sms.diagnosis
 from sms.cli.command import app
+from sms.diagnosis import pipeline
 from sms.errors import InputError
 from sms.rigs.threads import VARIABLE, threads
 from typer.testing import CliRunner
@@ -44,3 +45,11 @@ def test_the_option_goes_before_the_environment(
 
 def test_no_threads_are_refused() -> None:
     assert CliRunner().invoke(app, ["diagnose", "rig.toml", "--threads", "0"]).exit_code == 2
+
+
+def test_what_is_wrong_with_the_environment_is_no_fault_of_a_record(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv(VARIABLE, "two")
+    with pytest.raises(InputError, match=f"^{VARIABLE} is 'two'"):
+        pipeline.diagnose("no rig file is looked for")

@@ -23,6 +23,7 @@ from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.io.thinning import raise_if_too_many, thinned
 from sms.rigs.kinds import KINDS
+from sms.rigs.threads import threads
 
 
 def diagnose(
@@ -41,6 +42,7 @@ def diagnose(
             "this installation of sms was built without Ceres and cannot fit; "
             "install Ceres (Debian: apt-get install libceres-dev) and then sms again"
         )
+    threads()  # what is wrong with it is no fault of a record
     rng = np.random.default_rng(seed)
     progress("reading records", 0.0)
     rig = load_rig(path)
