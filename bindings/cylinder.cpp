@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "bind.hpp"
-#include "sms/piston.hpp"
+#include "sms/force_balance.hpp"
 
 namespace sms_python {
 namespace {

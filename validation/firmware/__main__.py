@@ -91,7 +91,7 @@ def code_size() -> int:
 
 def deepest_frame() -> tuple[int, str]:
     """The largest stack frame among the kinematic functions, bytes."""
-    text = (OUT / "abi_float.arm.su").read_text(encoding="utf-8")
+    text = (OUT / "mechanism_float.arm.su").read_text(encoding="utf-8")
     rows = re.findall(r"^\S+?:\d+:\d+:(.+)\t(\d+)\t", text, re.MULTILINE)
     frames = [(int(size), name) for name, size in rows if re.search("kinematics|geometry", name)]
     return max(frames)

@@ -15,12 +15,12 @@ core="-std=c++14 -O3 -DNDEBUG -DSMS_FLOAT_ONLY -DEIGEN_DONT_VECTORIZE -DEIGEN_MA
 c="-std=c99 -O2 -ffp-contract=off -I$libsms/include"
 
 # shellcheck disable=SC2086  # lists of words
-for source in info abi_float; do
+for source in info mechanism_float plant_float; do
   arm-none-eabi-g++ $target $core -fstack-usage -c "$libsms/src/$source.cpp" -o "$out/$source.arm.o"
   g++ $core -c "$libsms/src/$source.cpp" -o "$out/$source.host.o"
 done
 rm -f "$out/libsmsf.arm.a"
-arm-none-eabi-ar rcs "$out/libsmsf.arm.a" "$out/info.arm.o" "$out/abi_float.arm.o"
+arm-none-eabi-ar rcs "$out/libsmsf.arm.a" "$out/info.arm.o" "$out/mechanism_float.arm.o" "$out/plant_float.arm.o"
 
 # shellcheck disable=SC2086
 {
@@ -29,5 +29,5 @@ arm-none-eabi-ar rcs "$out/libsmsf.arm.a" "$out/info.arm.o" "$out/abi_float.arm.
   arm-none-eabi-gcc $target --specs=rdimon.specs -nostartfiles -T "$here/mps2.ld" -Wl,--gc-sections \
     -Wl,--no-warn-rwx-segments "$(arm-none-eabi-gcc $target -print-file-name=rdimon-crt0.o)" \
     "$out/startup.o" "$out/count.arm.o" "$out/libsmsf.arm.a" -lm -Wl,-Map="$out/count.map" -o "$out/count.elf"
-  gcc $c "$here/count.c" "$out/info.host.o" "$out/abi_float.host.o" -lm -o "$out/count.host"
+  gcc $c "$here/count.c" "$out/info.host.o" "$out/mechanism_float.host.o" "$out/plant_float.host.o" -lm -o "$out/count.host"
 }

@@ -32,9 +32,10 @@ g++ $machine "$out/fault_table.$bits.o" "$out/info.$bits.o" $objects -o "$out/fa
 [ "$bits" = 64 ] || exit 0
 
 compile "$machine" c++17 "$here/lockstep.cpp" "$out/lockstep.o"
-compile "$machine" c++14 "$libsms/src/abi_double.cpp" "$out/abi_double.o"
+compile "$machine" c++14 "$libsms/src/mechanism_double.cpp" "$out/mechanism_double.o"
+compile "$machine" c++14 "$libsms/src/plant_double.cpp" "$out/plant_double.o"
 # shellcheck disable=SC2086
-g++ "$out/lockstep.o" "$out/abi_double.o" "$out/info.$bits.o" $objects -o "$out/lockstep.host"
+g++ "$out/lockstep.o" "$out/mechanism_double.o" "$out/plant_double.o" "$out/info.$bits.o" $objects -o "$out/lockstep.host"
 for source in $(echo "$sources" | grep -vx sms_firmware); do
   # shellcheck disable=SC2086
   ${CMAKE_CXX_COMPILER_LAUNCHER-} g++ -std=c++14 $flags -include "$here/poison.h" -c "$firmware/$source.cpp" \

@@ -241,4 +241,10 @@ ForceBalance<S> seal_balance(const Params<S>& p, FrictionLaw law, const Piston<S
   return balance;
 }
 
+// F_L, N: the force with which the rod pushes on its load, from the motion (eq. 6.4).
+template <typename S>
+S rod_force(const Params<S>& p, const Piston<S>& piston) {
+  return pressure_force(p, piston) - friction(p, piston) - p.moving_mass * piston.acceleration;
+}
+
 }  // namespace sms

@@ -37,25 +37,10 @@
 #include "sms/effect.hpp"
 #include "sms/map_error.hpp"
 #include "sms/params.hpp"
+#include "sms/piston.hpp"
 #include "sms/scalar.hpp"
 
 namespace sms {
-
-// What the seals of one cylinder feel.
-template <typename S>
-struct Piston {
-  S extension;       // x, m, 0 retracted
-  S velocity;        // v, m/s, positive while extending
-  S acceleration;    // a, m/s^2
-  S pressure_lower;  // p_a, Pa absolute: extends the rod
-  S pressure_upper;  // p_b, Pa absolute; ambient for a single-acting cylinder
-};
-
-template <typename S>
-bool is_finite(const Piston<S>& piston) {
-  return is_finite(piston.extension) && is_finite(piston.velocity) && is_finite(piston.acceleration) &&
-         is_finite(piston.pressure_lower) && is_finite(piston.pressure_upper);
-}
 
 // sgn(v) alpha of eq. 6.7: an odd function, from -1 to 1, smooth through v = 0.
 template <typename S>

@@ -1,4 +1,4 @@
-// The force balance of one pneumatic cylinder (dissertation, eq. 6.4 and 4.34).
+// The piston of one pneumatic cylinder and the force of the gas on it (dissertation, eq. 6.4 and 4.34).
 //
 //   (M_L + M_p) a = p_a A_a - p_b A_b - p_A A_r - F_f - F_L
 //
@@ -7,9 +7,26 @@
 // same with its other chamber open: p_b = p_A, so that p_b A_b + p_A A_r = p_A A_a.
 #pragma once
 
-#include "sms/friction.hpp"
+#include "sms/params.hpp"
+#include "sms/scalar.hpp"
 
 namespace sms {
+
+// The piston of one cylinder, and what its seals feel.
+template <typename S>
+struct Piston {
+  S extension;       // x, m, 0 retracted
+  S velocity;        // v, m/s, positive while extending
+  S acceleration;    // a, m/s^2
+  S pressure_lower;  // p_a, Pa absolute: extends the rod
+  S pressure_upper;  // p_b, Pa absolute; ambient for a single-acting cylinder
+};
+
+template <typename S>
+bool is_finite(const Piston<S>& piston) {
+  return is_finite(piston.extension) && is_finite(piston.velocity) && is_finite(piston.acceleration) &&
+         is_finite(piston.pressure_lower) && is_finite(piston.pressure_upper);
+}
 
 template <typename S>
 S circle_area(const S& diameter) {
@@ -37,12 +54,6 @@ S pressure_force(const Params<S>& p, const Piston<S>& piston) {
   const PistonAreas<S> area = piston_areas(p);
   return (piston.pressure_lower - p.ambient_pressure) * area.lower -
          (piston.pressure_upper - p.ambient_pressure) * area.upper;
-}
-
-// F_L, N: the force with which the rod pushes on its load, from the motion.
-template <typename S>
-S rod_force(const Params<S>& p, const Piston<S>& piston) {
-  return pressure_force(p, piston) - friction(p, piston) - p.moving_mass * piston.acceleration;
 }
 
 }  // namespace sms
