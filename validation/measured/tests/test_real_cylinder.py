@@ -8,6 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sms.diagnosis import Diagnosis, diagnose
+from sms.errors import InputError
+from sms.io.records import load_record
+from sms.io.rig import load_rig
+
+from validation.measured.seals import SEALS, TERMS, least_squares, left
 
 ROOT = Path(__file__).parents[3]
 DATA = "cylinder_friction_zillen"
@@ -76,3 +81,23 @@ def test_the_proportional_error_stays_with_the_rig_and_the_friction_goes_with_th
         text = " ".join(answer.conclusion)
         assert "belongs to the rig, not to the seal" in text
         assert "goes with the seal" in text
+
+
+@pytest.mark.parametrize("seal", SEALS)
+def test_every_seal_names_both_causes_and_leaves_no_more_than_least_squares_with_both(
+    seal: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert FOLDER is not None
+    monkeypatch.setenv("SMS_DATA", str(FOLDER.parent))
+    path = ROOT / "validation" / "measured" / "rigs" / f"cylinder_{seal}.toml"
+    rig = load_rig(path)
+    try:
+        for source in rig.records:
+            load_record(rig, source)
+    except InputError as error:
+        pytest.skip(f"its records are not at hand: {error}")
+    answer = diagnose(path)
+    named = {member for cause in answer.causes for member in cause.members}
+    assert "pressure_dependent_friction" in named
+    assert named & {"sensor_gain", "sensor_offset"}
+    assert left(answer) < 1.01 * min(least_squares(rig, terms) for terms in TERMS.values())
