@@ -15,12 +15,15 @@ CHECKOUT = Path(__file__).parents[2]
 RIGS = sorted((CHECKOUT / "validation" / "measured" / "rigs").glob("cylinder_*.toml"))
 FOLDER = "cylinder_friction_zillen"
 BAR = (1, 3, 5, 7)
+SHARED = ("O-ring", "KDN", "rerun1_O-ring257", "rerun3_O-ring257")
+NOT_SHARED = ("O-ring257", "X-ring257")
+"""Seals whose records are only where their rig file says."""
 
 
 def write_stand_ins(folder: Path) -> None:
     """Files of the names and columns of the real ones, from the healthy record of the tests."""
     folder.mkdir()
-    for name in ("O-ring", "KDN", "rerun1_O-ring257", "rerun3_O-ring257"):
+    for name in (*SHARED, *NOT_SHARED):
         for bar in BAR:
             s = healthy_signals(gauge_pressure=bar * 1e5)
             if "257" in name:
@@ -46,21 +49,28 @@ def data(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
     return "stand-in"
 
 
-def test_the_four_rig_files_are_here() -> None:
+def test_the_rig_files_are_here() -> None:
     assert [path.stem for path in RIGS] == [
         "cylinder_kdn",
         "cylinder_o_ring",
+        "cylinder_o_ring_257",
         "cylinder_o_ring_rerun1",
         "cylinder_o_ring_rerun3",
+        "cylinder_x_ring_257",
     ]
 
 
 @pytest.mark.parametrize("path", RIGS, ids=lambda path: path.stem)
 def test_a_real_rig_file_reads_and_its_records_can_be_used(path: Path, data: str) -> None:
-    rig = load_rig(path)
+    try:
+        rig = load_rig(path)
+    except ValueError as error:
+        if data == "real" and path.stem.endswith("_257") and "there is no file" in str(error):
+            pytest.skip(f"its records are not at hand: {error}")
+        raise
     assert (rig.kind, rig.skip_first) == ("cylinder", 15)
     assert rig.speed_above == pytest.approx(0.004)
-    bore = 0.0257 if "rerun" in path.stem else 0.025
+    bore = 0.0257 if "257" in path.stem or "rerun" in path.stem else 0.025
     assert rig.declared("bore_diameter").value == pytest.approx(bore)
     assert rig.declared("bore_diameter").uncertainty == pytest.approx(2e-5)
     assert rig.declared("coulomb_force").fit
