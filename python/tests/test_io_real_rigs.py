@@ -89,7 +89,7 @@ def test_a_real_rig_file_reads_and_its_records_can_be_used(path: Path, data: str
         if data == "stand-in":
             assert not severities
         pressure = record.signals["chamber_pressure_lower"]
-        assert np.median(pressure) == pytest.approx(float(source.name[0]) * 1e5, rel=0.02)
+        assert np.median(pressure) == pytest.approx(float(source.name[0]) * 1e5, rel=0.05)
         assert record.gauge == {"chamber_pressure_lower"}
         assert record.signals["extension"].min() > 0.0
         assert record.signals["extension"].max() < 0.045
