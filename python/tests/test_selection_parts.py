@@ -10,7 +10,7 @@ import pytest
 from sms.diagnosis.reference import _inflation
 from sms.diagnosis.selection import judgement, pairs
 from sms.diagnosis.selection.candidates import Trial
-from sms.diagnosis.selection.finite_steps import Step
+from sms.diagnosis.selection.finite_steps import Step, chosen_by_step
 from sms.diagnosis.selection.outcome import Round
 from sms.estimation.windows import Runs
 
@@ -111,3 +111,22 @@ def test_pairs_are_filled_up_with_what_was_not_fitted(monkeypatch: pytest.Monkey
         trials.append(trial)
     tried, _ = pairs._most_promising(trials, current, cast(Any, None))
     assert [t.effect for t in tried] == ["d", "b", "c", "a"]
+
+
+def test_several_names_of_one_change_take_one_of_the_places_that_are_fitted() -> None:
+    """A zero, a gain and a supply's setting shift one reading alike: a supply that droops was fitted after them only."""
+    shift, droop, other, fourth = np.eye(4)
+    current = cast(Any, "model as it stands")
+    steps = [
+        Step(9.0, current, shift),
+        Step(8.9, current, -2.0 * shift),  # another direction
+        Step(8.8, current, 3.0 * shift),
+        Step(8.7, current, shift + 0.01 * other),
+        Step(3.0, current, droop),
+        Step(2.0, current, other),
+        Step(1.0, current, fourth),
+        Step(0.0, current, fourth),
+    ]
+    chosen = chosen_by_step(steps)
+    assert chosen[:3] == [0, 1, 4]
+    assert set(chosen) == {0, 1, 2, 3, 4}

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sms import _core
 from sms.arrays import Array
@@ -105,18 +106,29 @@ def best_step(
     found = fit_windows(excerpt.problem, best.params, free)
     gain = here - logarithms(excerpt, found.residual)
     refined = Step(gain, found.params, found.residual - before)
+    if all(
+        found.params[n] == base[n] for n in effect.parameters
+    ):  # a search for the initial states, and no effect
+        refined = nothing
     return max(nothing, best, refined, key=lambda step: step.gain)
 
 
 def chosen_by_step(steps: Sequence[Step]) -> list[int]:
-    """Those that help most, and those that do nearly the same as the first of them."""
-    order = sorted(range(len(steps)), key=lambda k: -steps[k].gain)
-    first = steps[order[0]].change
-    unit = first / max(float(np.linalg.norm(first)), 1e-300)
-    alike = [
-        k
-        for k in order
-        if float(unit @ steps[k].change) > TWINS * float(np.linalg.norm(steps[k].change))
+    """Those that help most, each in a direction of its own, and those that do nearly the same as the first of them."""
+    helping = [
+        k for k in sorted(range(len(steps)), key=lambda k: -steps[k].gain) if steps[k].gain > 0.0
     ]
-    helping = [k for k in order if steps[k].gain > 0.0]
-    return list(dict.fromkeys(helping[:TRIED_BY_STEP] + [k for k in alike if k in helping]))
+    change = np.array([step.change for step in steps])
+    unit = change / np.maximum(np.linalg.norm(change, axis=1), 1e-300)[:, None]
+    alike = unit @ unit.T > TWINS
+    with_first = [k for k in helping if alike[helping[0], k]]
+    return list(dict.fromkeys(first_of_each(helping, alike)[:TRIED_BY_STEP] + with_first))
+
+
+def first_of_each(order: Sequence[int], alike: NDArray[np.bool_]) -> list[int]:
+    """In that order, without what is alike to one before: several names of one change take one place."""
+    first: list[int] = []
+    for k in order:
+        if not np.any(alike[k, first]):
+            first.append(k)
+    return first

@@ -39,6 +39,7 @@ from sms.diagnosis.selection.finite_steps import (
     best_steps,
     chosen_by_step,
     extended,
+    first_of_each,
 )
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.judgement import (
@@ -74,7 +75,9 @@ def try_effects(
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     steps = best_steps(effects, current, data)
     by_step = chosen_by_step(steps)
-    by_slope = [int(k) for k in np.argsort(-promise)[:TRIED_BY_SLOPE] if promise[k] > 0.0]
+    by_slope = first_of_each(
+        [int(k) for k in np.argsort(-promise) if promise[k] > 0.0], scores.cosine > ALIKE
+    )[:TRIED_BY_SLOPE]
     chosen = list(dict.fromkeys(by_step + by_slope))
     chosen += [
         k
