@@ -5,7 +5,8 @@ namespace sms {
 
 template <typename S>
 S limited(const S& x, const S& lower, const S& upper) {
-  return x < lower ? lower : (x > upper ? upper : x);
+  const S raised = x < lower ? lower : x;  // one at a time: a maximum and a minimum, without a branch
+  return upper < raised ? upper : raised;
 }
 
 }  // namespace sms
