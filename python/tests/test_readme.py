@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[2]
-DATA = [Path(p) for p in (os.environ.get("SMS_DATA"), ROOT.parent / "shared" / "data") if p]
 
 
 def block(language: str) -> str:
@@ -20,10 +16,6 @@ def block(language: str) -> str:
     return str(found[0])
 
 
-@pytest.mark.skipif(
-    not any((p / "cylinder_friction_zillen").is_dir() for p in DATA),
-    reason=f"the measured data is not at hand (looked in {DATA}); set SMS_DATA to its folder",
-)
 def test_the_python_example_names_both_causes() -> None:
     result = subprocess.run(
         [sys.executable, "-c", block("python")],

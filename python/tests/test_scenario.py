@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import sms
+from sms.data import SCENARIOS, WAVES
 from sms.io import InputError
 from sms.report.scene import scene_of
 from sms.report.simulation import simulation_html
@@ -34,12 +35,7 @@ from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
 from test_cli_mechanism import run
 
-DATA = Path(__file__).parents[2] / "../shared/data"
 DOCS = Path(__file__).parents[2] / "docs/simulation.md"
-SCENARIOS = Path(__file__).parents[2] / "validation/measured/scenarios"
-needs_data = pytest.mark.skipif(
-    not (DATA / "ship_section_waves_sundsdal").is_dir(), reason="needs ../shared/data"
-)
 
 DAMPED = """
 [controller]
@@ -235,10 +231,8 @@ def test_the_picture_is_the_mechanism(tmp_path: Path) -> None:
 # ---- deck motions ----
 
 
-@needs_data
-def test_real_waves_are_followed_within_half_a_degree(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SMS_DATA", str(DATA))
-    asked = load_scenario(SCENARIOS / "waves_3012.toml")
+def test_real_waves_are_followed_within_half_a_degree() -> None:
+    asked = load_scenario(SCENARIOS["waves_3012"])
     assert asked.deck_motion is not None
     part = asked.deck_motion.model_copy(update={"first": "230 s", "last": "250 s"})
     asked = replace(asked, deck_motion=part)
@@ -249,15 +243,14 @@ def test_real_waves_are_followed_within_half_a_degree(monkeypatch: pytest.Monkey
     assert abs(roll.metrics.largest_error) < np.radians(0.5) and found.limit == ""
 
 
-@needs_data
-def test_waves_that_ask_for_too_much(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SMS_DATA", str(DATA))
-    text = (SCENARIOS / "waves_3061.toml").read_text(encoding="utf-8")
+def test_waves_that_ask_for_too_much(tmp_path: Path) -> None:
+    text = SCENARIOS["waves_3061"].read_text(encoding="utf-8")
+    text = text.replace('file = "', f'file = "{WAVES}/')
     scenario(tmp_path, text.replace('beyond = "clip"', 'beyond = "refuse"'))
     result = command("simulate", "scenario.toml", "--out", "out", cwd=tmp_path)
     refused(result, "[deck_motion] roll: roll -9.5°", "32 to 368 mm is allowed", 'beyond = "clip"')
     assert not (tmp_path / "out").exists()
-    cut = command_of(load_scenario(SCENARIOS / "waves_3061.toml")).motion
+    cut = command_of(load_scenario(SCENARIOS["waves_3061"])).motion
     assert cut is not None and cut.cuts[0].limit == "stroke"
     assert "became roll -8.1°" in cut.cuts[0].sentence
 

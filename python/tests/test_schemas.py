@@ -14,11 +14,16 @@ from io_support import PLAIN_RIG
 from sms import schemas
 
 ROOT = Path(__file__).resolve().parents[2]
-RIGS = sorted((ROOT / "validation" / "measured" / "rigs").glob("*.toml"))
+RIGS = sorted(
+    [
+        *(ROOT / "python/sms/data").glob("*/cylinder_*.toml"),
+        *(ROOT / "validation/measured/rigs").glob("*.toml"),
+    ]
+)
 SCENARIOS = sorted(
     [
         *(ROOT / "python/sms/validation/scenarios").glob("*.toml"),
-        *(ROOT / "validation/measured/scenarios").glob("*.toml"),
+        *(ROOT / "python/sms/data").glob("*/waves_*.toml"),
     ]
 )
 

@@ -2,14 +2,13 @@
 
     python -m validation.measured.friction
 
-Each rig file under validation/measured/rigs is one seal or one repeat of a test. The runs are slow (4 to 14 mm/s),
+Each rig file in sms/data is one seal or one repeat of a test. The runs are slow (4 to 14 mm/s),
 so the table says little by design: what these motions cannot show is left out of it.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
-
+from sms.data import cylinder_rig
 from sms.identification.friction import FrictionResult, identify_friction
 from sms.identification.friction_fit import EQUATION
 
@@ -38,8 +37,7 @@ def main() -> None:
           "| not significant |")  # fmt: skip
     print("|---|---|---|---|---|---|---|")
     for name in RIGS:
-        path = Path(__file__).parent / "rigs" / f"{name}.toml"
-        print(line(name, identify_friction(path)), flush=True)
+        print(line(name, identify_friction(cylinder_rig(name))), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """The README's picture: the first screen of the report on the measured cylinder, as a browser shows it.
 
-python -m validation.measured.report_picture        (needs Chromium: apt-get install chromium; and the measured data)
+python -m validation.measured.report_picture        (needs Chromium: apt-get install chromium)
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from sms.data import cylinder_rig
 from sms.diagnosis import diagnose
 from sms.report.diagnosis import report_html
 
@@ -24,7 +25,7 @@ def main() -> int:
     if browser is None:
         print("report_picture: no Chromium here; apt-get install chromium", file=sys.stderr)
         return 2
-    page = report_html(diagnose(ROOT / "validation" / "measured" / "rigs" / "cylinder_o_ring.toml"))
+    page = report_html(diagnose(cylinder_rig("cylinder_o_ring")))
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "report.html"
         file.write_text(page, encoding="utf-8")

@@ -1,7 +1,7 @@
 """The demonstration: an effect that the diagnosis does not know is hidden in records, and has to be found.
 
 ./dev demo            records made by the independent simulator in validation/trials
-./dev demo --real     the measured cylinder, where its data is at hand
+./dev demo --real     the measured cylinder
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 from rich.console import Console
+from sms.data import cylinder_rig
 from sms.diagnosis import Diagnosis, diagnose
 from sms.errors import InputError
 from sms.io.write import check_output_folder
@@ -23,8 +24,6 @@ from sms.report.files import write_diagnosis
 from validation.trials.cylinder import key_of
 from validation.twins.cylinder import effects
 from validation.twins.cylinder.draw import draw, open_truth
-
-RIGS = Path(__file__).parents[1] / "measured" / "rigs"
 
 
 def run(rig: Path, out: Path, seed: int, console: Console) -> Diagnosis:
@@ -75,7 +74,7 @@ def _one_of_the_catalogue(seed: int) -> str:
 def real_cylinder(out: Path, console: Console) -> None:
     for name in ("cylinder_o_ring", "cylinder_kdn"):
         console.rule(name)
-        run(RIGS / f"{name}.toml", out / name, 1, console)
+        run(cylinder_rig(name), out / name, 1, console)
 
 
 def main() -> int:

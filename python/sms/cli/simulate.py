@@ -12,6 +12,7 @@ import typer
 
 from sms.cli.assets import Assets
 from sms.cli.mechanism import AsJson, Settings, bad_input
+from sms.data import scenario_file
 from sms.errors import InputError
 from sms.parameters import PARAMETERS
 from sms.progress import INTERRUPTED_CODE, progress_bar
@@ -26,7 +27,7 @@ MIN_SAMPLES = 16
 def register(app: typer.Typer) -> None:
     """Add the commands."""
     app.command(
-        epilog="Example: **sms simulate waves_3012.toml --out run** writes run/run.csv, run/run.json and "
+        epilog="Example: **sms simulate waves_3012 --out run** writes run/run.csv, run/run.json and "
         "run/report.html with the platform moving in 3-D. docs/simulation.md explains every key of "
         "the scenario file."
     )(simulate)
@@ -39,7 +40,10 @@ def register(app: typer.Typer) -> None:
 
 def simulate(
     scenario: Annotated[
-        Path, typer.Argument(help="The scenario file (TOML): plant, controller, motion.")
+        Path,
+        typer.Argument(
+            help="The scenario file (TOML): plant, controller, motion; or one that is shipped: waves_3012, waves_3061."
+        ),
     ],
     out: Annotated[
         Path, typer.Option(help="Folder for the run, its findings and the page.")
@@ -64,7 +68,7 @@ def simulate(
     from sms.scenario.tank import TankRecord, run_tank, tank_findings  # noqa: PLC0415
 
     with bad_input():
-        asked = with_scale(load_scenario(scenario, settings_in_si(settings)), scale)
+        asked = with_scale(load_scenario(scenario_file(scenario), settings_in_si(settings)), scale)
         with progress_bar("preparing the motion") as tell:
             command = command_of(asked)
             tank = asked.plant == "tank"

@@ -1,7 +1,7 @@
 """The rig file: what was measured, what is known about it, and which column is which signal.
 
 `load_rig` reads a TOML file into a `Rig`, in SI units, with every record's file found on disk.
-docs/rig_file.md describes the format; the files validation/measured/rigs/*.toml show it with comments.
+docs/rig_file.md describes the format; the files sms/data/*/cylinder_*.toml show it with comments.
 """
 
 from __future__ import annotations

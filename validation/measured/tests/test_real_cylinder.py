@@ -2,41 +2,20 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import numpy as np
 import pytest
+from sms.data import cylinder_rig
 from sms.diagnosis import Diagnosis, diagnose
 from sms.errors import InputError
 from sms.io.records import load_record
 from sms.io.rig import load_rig
 
-from validation.measured.seals import SEALS, TERMS, least_squares, left
-
-ROOT = Path(__file__).parents[3]
-DATA = "cylinder_friction_zillen"
-PLACES = [
-    Path(p) / DATA for p in (os.environ.get("SMS_DATA"), ROOT.parent / "shared" / "data") if p
-]
-FOLDER = next((p for p in PLACES if p.is_dir()), None)
-
-pytestmark = pytest.mark.skipif(
-    FOLDER is None,
-    reason=f"the measured data is not at hand (looked in {PLACES}); "
-    "GitHub EvaZillen/3D-printed-pneumatic-actuator, CC0-1.0, set SMS_DATA to the folder "
-    "above it",
-)
+from validation.measured.seals import SEALS, TERMS, least_squares, left, rig_file
 
 
 @pytest.fixture(scope="module", params=["o_ring", "kdn"])
 def answer(request: pytest.FixtureRequest) -> Diagnosis:
-    assert FOLDER is not None
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SMS_DATA", str(FOLDER.parent))
-        return diagnose(
-            ROOT / "validation" / "measured" / "rigs" / f"cylinder_{request.param}.toml"
-        )
+    return diagnose(cylinder_rig(f"cylinder_{request.param}"))
 
 
 def test_two_causes_are_named(answer: Diagnosis) -> None:
@@ -85,11 +64,9 @@ def test_the_proportional_error_stays_with_the_rig_and_the_friction_goes_with_th
 
 @pytest.mark.parametrize("seal", SEALS)
 def test_every_seal_names_both_causes_and_leaves_no_more_than_least_squares_with_both(
-    seal: str, monkeypatch: pytest.MonkeyPatch
+    seal: str,
 ) -> None:
-    assert FOLDER is not None
-    monkeypatch.setenv("SMS_DATA", str(FOLDER.parent))
-    path = ROOT / "validation" / "measured" / "rigs" / f"cylinder_{seal}.toml"
+    path = rig_file(seal)
     try:
         rig = load_rig(path)
         for source in rig.records:
