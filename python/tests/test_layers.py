@@ -23,6 +23,8 @@ FORBIDDEN = {
     "sweep": ("report", "cli"),
     "validation": ("report", "cli"),
     "report": ("cli",),
+    "demo": ("report", "cli"),
+    "data": ("io", "rigs", "diagnosis", "report", "cli"),
     "link": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),
 }
 """Package -> packages that it must not import, not even inside a function."""

@@ -21,6 +21,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
+from sms.demo.hidden import key_of, said
 from sms.diagnosis import diagnose
 
 from validation.twins.cylinder import effects
@@ -68,16 +69,9 @@ def run_trial(seed: int, effect: str | None = None, multiple: float = 3.0) -> Ou
         answer = diagnose(records / "rig.toml", seed=seed)
         truth = open_truth(sealed, records)
     hidden = key_of(truth["effect"], truth["signal"])
-    named = tuple(
-        (key_of(c.effect, c.signal), *(key_of(a.effect, a.signal) for a in c.alternatives))
-        for c in answer.causes
-    )
+    named = tuple(map(tuple, said(answer)))
     values = {key_of(c.effect, c.signal): c.parameters[0].value for c in answer.causes}
     return Outcome(seed, hidden, truth["value"], answer.verdict, named, values.get(hidden))
-
-
-def key_of(effect: str, signal: str | None) -> str:
-    return effect if signal is None else f"{effect}:{signal}"
 
 
 def run_trials(

@@ -13,7 +13,19 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms import _core
-from sms.cli import can, identify, limits, mechanism, new, noise, schema, simulate, study, validate
+from sms.cli import (
+    can,
+    demo,
+    identify,
+    limits,
+    mechanism,
+    new,
+    noise,
+    schema,
+    simulate,
+    study,
+    validate,
+)
 from sms.cli.assets import Assets
 from sms.errors import InputError
 from sms.report.assets import Place
@@ -120,6 +132,7 @@ def diagnose(
     console.print(written, style="dim", soft_wrap=True, markup=False)
 
 
+demo.register(app)
 mechanism.register(app)
 identify.register(app)
 limits.register(app)
