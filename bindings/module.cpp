@@ -1,9 +1,18 @@
 #include "bind.hpp"
 
+// As the compiler sees it, not as a build script believes it to be.
+#ifdef __AVX2__
+constexpr bool kAvx2 = true;
+#else
+constexpr bool kAvx2 = false;
+#endif
+
 PYBIND11_MODULE(_core, m) {
   m.doc() = "The C++ core of sms: parameters, equations, estimation. Use it through the package sms.";
   m.attr("__version__") = sms_version();
   m.attr("build_info") = sms_build_info();
+  m.def(
+      "uses_avx2", [] { return kAvx2; }, "Whether this copy of the core was compiled with AVX2.");
   sms_python::bind_status(m);
   sms_python::bind_params(m);
   sms_python::bind_cylinder(m);

@@ -1,5 +1,6 @@
 """Pneumatic motion platform: its equations, and what measured data says about them."""
 
+from sms import _dispatch  # noqa: F401  # first: decides which copy of the core sms._core is
 from sms._core import (
     NotANumberError,
     NotConvergedError,

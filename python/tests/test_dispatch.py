@@ -1,0 +1,46 @@
+"""Which copy of the core is loaded, as far as an installation with a single one shows it; the rest: packaging/wheel."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+from sms import _core, _dispatch
+
+
+def imported_with(choice: str) -> subprocess.CompletedProcess[str]:
+    code = "from sms import _core; print(_core.uses_avx2())"
+    environment = {**os.environ, "SMS_AVX2": choice}
+    return subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.parametrize("runs_avx2", [True, False])
+def test_the_processor_decides_unless_told_otherwise(runs_avx2: bool) -> None:
+    assert _dispatch.takes_second("AUTO", runs_avx2) == runs_avx2
+    assert not _dispatch.takes_second("OFF", runs_avx2)
+
+
+def test_avx2_is_refused_where_it_does_not_run() -> None:
+    assert _dispatch.takes_second("ON", True)
+    with pytest.raises(ImportError, match="which this processor does not run"):
+        _dispatch.takes_second("ON", False)
+
+
+def test_a_word_that_is_no_choice() -> None:
+    done = imported_with("maybe")
+    assert done.returncode != 0
+    assert "SMS_AVX2 is one of AUTO, ON, OFF, not 'maybe'" in done.stderr
+
+
+@pytest.mark.skipif(_dispatch.second_copy() is not None, reason="an installation of two copies")
+def test_a_single_core_is_what_it_was_compiled_to_be() -> None:
+    same, other = ("ON", "OFF") if _core.uses_avx2() else ("OFF", "ON")
+    done = imported_with(same)
+    assert done.stdout.strip() == str(_core.uses_avx2()), done.stderr
+    done = imported_with(other)
+    assert done.returncode != 0
+    assert f"SMS_AVX2={other}: this installation has a single core" in done.stderr
