@@ -104,14 +104,15 @@ std::string as_json(const Options& options, const Report& report) {
   for (const std::size_t n : report.shape) {
     shape += (shape.empty() ? "" : ", ") + text(n);
   }
-  return "{\"file\": " + quoted(options.output) + ", \"format\": " + quoted(options.format->name) +
-         ", \"precision\": " + quoted(precision_of(options)) + ", \"shape\": [" + shape +
-         "], \"bytes\": " + text(long(report.bytes)) + ",\n \"version\": " + quoted(report.version) +
-         ", \"geometry_hash\": " + quoted(report.geometry_hash) + ", \"solving_s\": " + text(report.solving) +
-         ", \"threads\": " + text(options.threads) + ",\n \"stroke_m\": " + text(report.stroke) +
-         ", \"least_extension_m\": " + text(report.use.least) + ", \"most_extension_m\": " + text(report.use.most) +
-         ", \"nodes_beyond_stroke\": " + text(report.use.beyond) + ",\n \"points\": " + text(options.points) +
-         ", \"seed\": " + text(options.seed) + ", \"interpolation\": " + quoted(options.cubic ? "cubic" : "linear") +
+  return "{\"schema\": \"sms.table\", \"schema_version\": 1,\n \"file\": " + quoted(options.output) +
+         ", \"format\": " + quoted(options.format->name) + ", \"precision\": " + quoted(precision_of(options)) +
+         ", \"shape\": [" + shape + "], \"bytes\": " + text(long(report.bytes)) +
+         ",\n \"version\": " + quoted(report.version) + ", \"geometry_hash\": " + quoted(report.geometry_hash) +
+         ", \"solving_s\": " + text(report.solving) + ", \"threads\": " + text(options.threads) +
+         ",\n \"stroke_m\": " + text(report.stroke) + ", \"least_extension_m\": " + text(report.use.least) +
+         ", \"most_extension_m\": " + text(report.use.most) + ", \"nodes_beyond_stroke\": " + text(report.use.beyond) +
+         ",\n \"points\": " + text(options.points) + ", \"seed\": " + text(options.seed) +
+         ", \"interpolation\": " + quoted(options.cubic ? "cubic" : "linear") +
          ", \"error\": " + text(chosen_error(options, report)) + ", \"max_error\": " + text(options.max_error) +
          ",\n \"nodes_m\": " + spread(report.errors.nodes) + ",\n \"linear\": " + object(report.errors.linear) +
          ",\n \"cubic\": " + object(report.errors.cubic) + "}\n";

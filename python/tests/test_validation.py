@@ -62,7 +62,7 @@ def test_row_agrees_within_its_band_and_never_without_a_number() -> None:
 
 def test_json_has_exactly_the_keys_and_no_nan() -> None:
     rows = [FIGURES["heave_gain"].row(-14.0, "why"), FIGURES["proportional_safe"].row(math.nan)]
-    loaded = json.loads(rows_to_json(rows), parse_constant=pytest.fail)
+    loaded = json.loads(rows_to_json(rows), parse_constant=pytest.fail)["rows"]
     assert [list(row) for row in loaded] == [KEYS, KEYS]
     assert loaded[0]["computed"] == -14.0 and loaded[0]["published"] == -11.0
     assert loaded[1]["computed"] is None and loaded[1]["published"] is None
@@ -157,7 +157,7 @@ def test_command_writes_page_and_rows(tmp_path: Path, monkeypatch: pytest.Monkey
     with pytest.raises(SystemExit) as left:
         main()
     assert left.value.code == 0
-    assert [list(row) for row in json.loads(rows.read_text())] == [KEYS, KEYS]
+    assert [list(row) for row in json.loads(rows.read_text())["rows"]] == [KEYS, KEYS]
     assert "gain at zero" in (out / "validation.html").read_text()
 
 

@@ -10,7 +10,6 @@ Other work on the computer shows in the numbers: run it on a quiet one. The load
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import subprocess
 import sys
@@ -21,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 import psutil
+from sms.io.json_files import json_text
 from sms.link.bus import BusAddress, open_bus
 from sms.link.codec import period
 from sms.link.drive import is_answer
@@ -136,7 +136,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         f"{'kept' if rows[1].core <= CORE_GOAL else 'missed'}"
     )
     if options.json:
-        options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1) + "\n")
+        options.json.write_text(json_text("measurements", {"rows": [asdict(row) for row in rows]}))
 
 
 if __name__ == "__main__":

@@ -7,13 +7,13 @@ one run on this machine. The machine's speed is in both numbers; the ratio carri
 from __future__ import annotations
 
 import argparse
-import json
 import subprocess
 from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
+from sms.io.json_files import json_text
 
 from validation.speed import flow, friction, mechanism, other_simulators, plant
 from validation.speed.timing import Row
@@ -72,7 +72,7 @@ def main() -> None:
     rows = measurements(options.peers)
     Console(width=120).print(table_of(rows))
     if options.json:
-        options.json.write_text(json.dumps([asdict(r) for r in rows], indent=1) + "\n")
+        options.json.write_text(json_text("measurements", {"rows": [asdict(r) for r in rows]}))
 
 
 if __name__ == "__main__":

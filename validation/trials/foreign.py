@@ -24,6 +24,7 @@ from rich.console import Console
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.result import Cause, Member
 from sms.errors import InputError
+from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
 from validation.trials.scoring import LARGEST_CLASS
@@ -99,7 +100,7 @@ def foreign(
                 highlight=False,
             )
             if as_json is not None:
-                write_text_atomically(as_json, json.dumps(as_dict(answers), indent=1) + "\n")
+                write_text_atomically(as_json, json_text("trials", as_dict(answers)))
     console.print(share_table(shares(answers)))
 
 

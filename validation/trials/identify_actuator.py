@@ -9,7 +9,6 @@ all repeats in the file that were asked for.
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -17,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from sms.identification.actuator import identify_actuator
+from sms.io.json_files import from_json_line, json_line
 from sms.parameters import PARAMETERS
 from sms.units_display import display_unit, words
 
@@ -48,14 +48,14 @@ def run(seeds: Sequence[int], file: Path, machine: Machine) -> Iterator[Repeat]:
     done: dict[int, Repeat] = {}
     if file.exists():
         for line in file.read_text().splitlines():
-            values = json.loads(line)
+            values = from_json_line(line)
             values["told"] = {name: tuple(v) for name, v in values["told"].items()}
             done[values["seed"]] = Repeat(**values)
     for seed in seeds:
         if seed not in done:
             found = repeat(seed, machine)
             with file.open("a") as lines:
-                lines.write(json.dumps(asdict(found)) + "\n")
+                lines.write(json_line("trials", asdict(found)))
             done[seed] = found
         yield done[seed]
 

@@ -11,7 +11,6 @@ named; on a healthy lung when nothing is named.
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import time
@@ -27,6 +26,7 @@ from rich.console import Console
 from rich.table import Table
 from sms.diagnosis import Diagnosis, own
 from sms.errors import InputError
+from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
 from validation.trials.foreign import judged
@@ -112,7 +112,7 @@ def lung(
                 soft_wrap=True,
             )
             if as_json is not None:
-                write_text_atomically(as_json, json.dumps(as_dict(answers), indent=1) + "\n")
+                write_text_atomically(as_json, json_text("trials", as_dict(answers)))
     console.print(share_table(shares(answers)))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
@@ -13,6 +12,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from sms.errors import InputError
+from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
 from validation.trials.by_level import by_level, follow_up_shares, follow_up_table, level_table
@@ -101,7 +101,7 @@ def _trials_of(rig: str) -> Callable[..., None]:
         page = out / "trials.html"
         write_text_atomically(page, trials_html(rig, first, multiple, outcomes))
         if as_json is not None:
-            write_text_atomically(as_json, json.dumps(as_dict(outcomes), indent=1) + "\n")
+            write_text_atomically(as_json, json_text("trials", as_dict(outcomes)))
         console.print(f"[dim]written: {page}, {out / 'trials.jsonl'}[/dim]")
 
     trials.__doc__ = f"""Hide effects in measurements of a virtual {rig}, diagnose them blind, count.

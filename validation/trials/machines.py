@@ -7,7 +7,6 @@ diagnosis nothing of it; they meet in the records' folder only.
 
 from __future__ import annotations
 
-import json
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -25,6 +24,7 @@ from sms.diagnosis.adequacy.subset_estimates import found_value
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import fit, fit_with_discrepancy
 from sms.diagnosis.simulated import Case
+from sms.io.json_files import json_line
 
 from validation.trials.answers import Answered, answered, key_of
 from validation.trials.follow_up import followed
@@ -239,7 +239,7 @@ def run_tasks(
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("a") as log:
         for outcome in _run(missing, workers, scheduler):
-            log.write(json.dumps(asdict(outcome)) + "\n")
+            log.write(json_line("trials", asdict(outcome)))
             log.flush()
             outcomes.append(outcome)
             each(outcome)

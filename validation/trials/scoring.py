@@ -7,7 +7,6 @@ nothing that is not there. A name that is not hidden is worse than no answer.
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.table import Table
+from sms.io.json_files import from_json_line
 
 SORTS = ("catalogue", "healthy", "outside", "pair")
 LARGEST_CLASS = 3
@@ -225,7 +225,7 @@ def load(file: Path) -> list[Outcome]:
     found: dict[Key, Outcome] = {}
     for line in file.read_text().splitlines() if file.exists() else []:
         try:
-            outcome = outcome_from(json.loads(line))
+            outcome = outcome_from(from_json_line(line))
         except (ValueError, TypeError):
             continue
         found[outcome.key] = outcome

@@ -7,7 +7,6 @@ data-fault, or a refusal, with the line to write; a physical cause is the worst.
 
 from __future__ import annotations
 
-import json
 import re
 import secrets
 import shutil
@@ -25,6 +24,7 @@ from sms.diagnosis import diagnose
 from sms.diagnosis.pipeline import read_and_check
 from sms.errors import InputError
 from sms.io import load_rig
+from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
 from validation.trials.bad_input import records, spoil
@@ -198,4 +198,4 @@ def register(app: typer.Typer) -> None:
                 "shares": shares_as_dicts(shares),
                 "tried": [asdict(t) for t in tried],
             }
-            write_text_atomically(out, json.dumps(found, indent=1) + "\n")
+            write_text_atomically(out, json_text("trials", found))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -104,6 +103,7 @@ def diagnose(
     data-fault.
     """
     from sms.diagnosis import diagnose as run  # noqa: PLC0415 (scipy takes a second; --help must not)
+    from sms.diagnosis.result import as_json as diagnosis_json  # noqa: PLC0415
     from sms.io.write import check_output_folder  # noqa: PLC0415
     from sms.report.console import print_diagnosis  # noqa: PLC0415
     from sms.report.files import write_diagnosis  # noqa: PLC0415
@@ -124,7 +124,7 @@ def diagnose(
         progress.update(task, description="writing the report", completed=0.95)
         files = write_diagnosis(answer, rig, out)
     if as_json:
-        print(json.dumps(answer.to_dict(), indent=1))
+        print(diagnosis_json(answer), end="")
         return
     console = Console()
     print_diagnosis(answer, console)

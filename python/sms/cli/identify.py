@@ -69,7 +69,7 @@ def flow(
     from sms.identification.flow import fit_records  # noqa: PLC0415
     from sms.identification.flow_result import assemble, parameter_file  # noqa: PLC0415
     from sms.identification.flow_rig import load_flow_test  # noqa: PLC0415
-    from sms.identification.output import json_text  # noqa: PLC0415
+    from sms.io.json_files import json_text  # noqa: PLC0415
     from sms.io.write import check_output_folder  # noqa: PLC0415 (scipy takes a second)
     from sms.report.flow import flow_html  # noqa: PLC0415
 
@@ -83,7 +83,7 @@ def flow(
             loaded.title, rig.name, heat, (ratios[0], ratios[1]), fits, findings, monotone
         )
         page = flow_html(result)
-    text = json_text(result.to_dict())
+    text = json_text("identify_flow", result.to_dict(), loaded.files)
     files = _write(
         out, {"flow.toml": parameter_file(result), "flow.json": text, "report.html": page}
     )
@@ -241,10 +241,10 @@ def _deliver(
     as_json: bool,
 ) -> None:
     """The rig file with what was found, the JSON and the page; then the sentences, or the JSON, on the terminal."""
-    from sms.identification.output import json_text  # noqa: PLC0415
-    from sms.io import write_extended_rig  # noqa: PLC0415
+    from sms.io import load_rig, write_extended_rig  # noqa: PLC0415
+    from sms.io.json_files import json_text  # noqa: PLC0415
 
-    text = json_text(dict(answer))
+    text = json_text(f"identify_{subject}", answer, load_rig(rig).files)
     header = "\n".join([f"Identified by sms identify {subject}.", *sentences])
     write_extended_rig(rig, out / f"{subject}.toml", declarations, header)
     files = _write(out, {f"{subject}.json": text, "report.html": page})

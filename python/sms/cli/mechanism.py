@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
@@ -65,7 +64,7 @@ def ik(
     extension = [float(e) for e in found.extension]
     if as_json:
         values = {"extension_m": extension, **_parasitic(found), **_convergence(found)}
-        print(json.dumps(values, indent=1))
+        _print_json("inverse_kinematics", values)
     else:
         print(f"extension  {_millimetres(extension)}   (stroke 0 to {1e3 * params.stroke:g} mm)")
         print(f"yaw        {_angle(found.yaw)}")
@@ -93,7 +92,7 @@ def fk(
             **_parasitic(found),
             **_convergence(found),
         }
-        print(json.dumps(values, indent=1))
+        _print_json("forward_kinematics", values)
     else:
         print(f"roll       {_angle(found.roll)}")
         print(f"pitch      {_angle(found.pitch)}")
@@ -118,6 +117,7 @@ def workspace(
     supply pressure can carry the payload.
     """
     from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
+    from sms.io.json_files import json_text  # noqa: PLC0415
     from sms.report.page import write_page  # noqa: PLC0415
     from sms.report.workspace import workspace_html  # noqa: PLC0415
     from sms.workspace_findings import findings, to_dict  # noqa: PLC0415
@@ -125,12 +125,12 @@ def workspace(
 
     with bad_input():
         surveyed = survey(machine(settings))
-    text = json.dumps(to_dict(surveyed), indent=1, ensure_ascii=False, allow_nan=False)
+    text = json_text("workspace", to_dict(surveyed))
     files = out / "workspace.html", out / "workspace.json"
     write_page(files[0], workspace_html(surveyed))
-    write_text_atomically(files[1], text + "\n")
+    write_text_atomically(files[1], text)
     if as_json:
-        print(text)
+        print(text, end="")
         return
     for finding in findings(surveyed):
         print(f"- {finding}")
@@ -165,6 +165,12 @@ def machine(settings: Sequence[str]) -> Params:
             unit = PARAMETERS[name].unit
             raise InputError(f"--set {setting}: '{value}' is not a number in {unit}") from None
     return params
+
+
+def _print_json(schema: str, values: Mapping[str, object]) -> None:
+    from sms.io.json_files import json_text  # noqa: PLC0415 (pandas takes its time; --help must not)
+
+    print(json_text(schema, values), end="")
 
 
 def _parasitic(found: InverseKinematics | ForwardKinematics) -> dict[str, float]:

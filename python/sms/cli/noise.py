@@ -43,8 +43,8 @@ def noise(
     """
     from sms.identification.noise import noise_of  # noqa: PLC0415
     from sms.identification.noise_record import noise_dict, noise_sentences, stretch  # noqa: PLC0415
-    from sms.identification.output import json_text  # noqa: PLC0415
     from sms.io import write_text_atomically  # noqa: PLC0415
+    from sms.io.json_files import json_text  # noqa: PLC0415
     from sms.io.write import check_output_folder  # noqa: PLC0415 (scipy takes a second; --help must not)
     from sms.report.noise import noise_html  # noqa: PLC0415
     from sms.report.page import write_page  # noqa: PLC0415
@@ -53,7 +53,8 @@ def noise(
     name, unit, time, values = stretch(record, signal, begin, end)
     found = noise_of(time, values, alpha, beta)
     said = noise_sentences(found, unit)
-    text = json_text({"record": record.name, "signal": name, "unit": unit} | noise_dict(found))
+    told = {"record": record.name, "signal": name, "unit": unit} | noise_dict(found)
+    text = json_text("noise", told, [record])
     files = out / "noise.html", out / "noise.json"
     write_page(files[0], noise_html(f"{name}, {record.name}", unit, time, values, found, said))
     write_text_atomically(files[1], text)

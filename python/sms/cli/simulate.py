@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -63,7 +62,7 @@ def simulate(
     charged and emptied by its valve, as in the flow test. Ctrl-C ends the run and keeps what was
     computed as run.partial.
     """
-    from sms.report.run_files import summary_of, write_run  # noqa: PLC0415
+    from sms.report.run_files import run_json, write_run  # noqa: PLC0415
     from sms.scenario import command_of, findings_of, load_scenario, run_scenario  # noqa: PLC0415
     from sms.scenario.tank import TankRecord, run_tank, tank_findings  # noqa: PLC0415
 
@@ -85,7 +84,7 @@ def simulate(
             )
             files = write_run(out, asked, command, record, findings)
     if as_json:
-        print(json.dumps(summary_of(asked, command, record, findings), indent=1))
+        print(run_json(asked, command, record, findings), end="")
     else:
         for sentence in findings.sentences:
             print(f"- {sentence}")

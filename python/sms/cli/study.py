@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -66,6 +65,7 @@ def compare(
     """
     from sms.comparison.files import WARNING, compare_files  # noqa: PLC0415 (scipy takes a second)
     from sms.io import write_text_atomically  # noqa: PLC0415
+    from sms.io.json_files import json_text  # noqa: PLC0415
     from sms.report.comparison import HEADERS, RATIOS, comparison_html, table_rows  # noqa: PLC0415
     from sms.report.page import write_page  # noqa: PLC0415
 
@@ -76,12 +76,12 @@ def compare(
             raise InputError(f"--pair {text}: write MEASURED=SIMULATED, two names of columns")
         renamed[left.strip()] = right.strip()
     found = compare_files(measured, simulated, signal, input_name, shift, align, renamed)
-    text = json.dumps(found.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+    text = json_text("comparison", found.to_dict(), [measured, simulated])
     files = out / "comparison.html", out / "comparison.json"
     write_page(files[0], comparison_html(found))
-    write_text_atomically(files[1], text + "\n")
+    write_text_atomically(files[1], text)
     if as_json:
-        print(text)
+        print(text, end="")
         return
     print_table(HEADERS, table_rows(found))
     print(RATIOS)
@@ -105,6 +105,7 @@ def requirements(
     part limits it: stroke, flow, force or the loop's bandwidth.
     """
     from sms.io import write_text_atomically  # noqa: PLC0415
+    from sms.io.json_files import json_text  # noqa: PLC0415
     from sms.report.requirements import (  # noqa: PLC0415
         HEADERS,
         requirements_html,
@@ -120,12 +121,12 @@ def requirements(
             found = compliance(machine(settings), controller, progress=tell)
         except ValueError as problem:
             raise InputError(str(problem)) from None
-    text = json.dumps(found.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+    text = json_text("requirements", found.to_dict())
     files = out / "requirements.html", out / "requirements.json"
     write_text_atomically(files[0], requirements_html(found))
-    write_text_atomically(files[1], text + "\n")
+    write_text_atomically(files[1], text)
     if as_json:
-        print(text)
+        print(text, end="")
         return
     print_table(HEADERS, table_rows(found))
     for sentence in sentences(found):

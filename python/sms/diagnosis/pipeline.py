@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import platform
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -19,6 +18,7 @@ from sms.diagnosis.preparation import make_data, without_windows
 from sms.diagnosis.result import Diagnosis, Finding
 from sms.errors import InputError
 from sms.io import check as data_check
+from sms.io.json_files import input_hashes, versions
 from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.io.thinning import raise_if_too_many, thinned
@@ -107,18 +107,13 @@ def blank_answer(
     rig: Rig, records: Sequence[Record], findings: tuple[Finding, ...], seed: int
 ) -> Diagnosis:
     """The parts of an answer that are known before anything is fitted."""
-    versions = {
-        "sms": _core.__version__,
-        "core": _core.build_info,
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-    }
     return Diagnosis(
         rig=rig.path.name,
         title=rig.title,
         findings=findings,
         records={r.name: r.role for r in records},
         seed=seed,
-        versions=versions,
+        versions=versions(),
+        inputs=input_hashes(rig.files),
         command=wording.of_command(rig) if rig.kind in KINDS else "",
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from sms.arrays import Array
 from sms.diagnosis.remainder import FedEquations, Hidden, Remainder, Shape, Symptom, Unexplained
+from sms.io.json_files import json_text
 from sms.views import Shown
 
 Verdict = Literal["no-evidence", "cause", "class", "combination", "unknown", "data-fault"]
@@ -227,6 +227,8 @@ class Diagnosis(Shown):
     """Record name -> role."""
     seed: int
     versions: dict[str, str] = field(default_factory=dict)
+    inputs: dict[str, str] = field(default_factory=dict)
+    """File name -> SHA-256 of its content, of every file that was read; empty for a model in Python."""
     command: str = ""
     """Where the valve's command comes from, record or simulated controller, in plain words; empty without a valve."""
     verdict: Verdict = "no-evidence"
@@ -273,16 +275,4 @@ def _without_series(items: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def as_json(diagnosis: Diagnosis) -> str:
     """The text of diagnosis.json."""
-    plain = _plain(diagnosis.to_dict())
-    return json.dumps(plain, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    """JSON has no NaN and no infinity: both become null."""
-    if isinstance(value, dict):
-        return {key: _plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
+    return json_text("diagnosis", diagnosis.to_dict())

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from sms import _core
 from sms.identification.actuator import BenchResult
 from sms.identification.bench_fit import BenchFit, Told
 from sms.io.rig import Declaration
@@ -111,8 +110,7 @@ def to_dict(result: BenchResult) -> dict[str, Any]:
     fit = result.fit
     found = fit.found
     return {
-        "sms": _core.__version__,
-        "rig": result.rig,
+                "rig": result.rig,
         "title": result.title,
         "subject": result.subject,
         "sentences": sentences(result),

@@ -90,7 +90,6 @@ class FlowResult(Shown):
     def to_dict(self) -> dict[str, Any]:
         """Everything, for programs; SI units."""
         return {
-            "sms": _core.__version__,
             "rig": self.rig,
             "title": self.title,
             "heat": self.heat,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sms import _core
 from sms.identification.friction import FrictionResult
 from sms.identification.friction_fit import EQUATION, LawFit, Told
 from sms.io.rig import Declaration
@@ -73,7 +72,6 @@ def declarations(result: FrictionResult) -> dict[str, Declaration]:
 def to_dict(result: FrictionResult) -> dict[str, Any]:
     """Everything, for programs; SI units."""
     return {
-        "sms": _core.__version__,
         "rig": result.rig,
         "title": result.title,
         "best": result.best,

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from sms import _core
 from sms.identification import bench_result
 from sms.identification.bench_result import COVERAGE
 from sms.identification.spool import (
@@ -108,7 +107,6 @@ def declarations(result: SpoolResult) -> dict[str, Declaration]:
 def to_dict(result: SpoolResult) -> dict[str, Any]:
     """Everything, for programs; SI units."""
     return {
-        "sms": _core.__version__,
         "rig": result.rig,
         "title": result.title,
         "sentences": sentences(result),

@@ -106,6 +106,12 @@ class Rig:
     """With the controller that is simulated, if in any record."""
     effects: Path | None = None  #: a file with effects beside those of the catalogue
 
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """Every file that is read with it: itself, its records, and what it names beside them."""
+        beside_it = (self.layout.dbc, self.effects, *(r.file for r in self.related))
+        return (self.path, *(r.file for r in self.records), *(f for f in beside_it if f))
+
     def declared(self, name: str) -> Declaration:
         """What is known of a parameter: from the file, else the default and its uncertainty."""
         if name in self.parameters:

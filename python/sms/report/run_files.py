@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
-from sms import _core
 from sms.io import write_parquet, write_table, write_text_atomically
+from sms.io.json_files import json_text
 from sms.report.page import write_page
 from sms.report.simulation import simulation_html
 from sms.scenario.findings import Findings
@@ -39,9 +38,7 @@ def write_run(
     else:
         write_table(table, written.columns())
     summary = out / f"{stem}.json"
-    write_text_atomically(
-        summary, json.dumps(summary_of(scenario, command, record, findings), indent=1) + "\n"
-    )
+    write_text_atomically(summary, run_json(scenario, command, record, findings))
     page = out / "report.html"
     write_page(page, simulation_html(scenario, command, record, findings))
     for other in ("run", "run.partial"):
@@ -50,6 +47,17 @@ def write_run(
             if old not in (table, summary):
                 old.unlink(missing_ok=True)
     return [table, summary, page]
+
+
+def run_json(
+    scenario: Scenario,
+    command: Command,
+    record: Record | TankRecord,
+    findings: Findings | TankFindings,
+) -> str:
+    """The text of run.json."""
+    content = summary_of(scenario, command, record, findings)
+    return json_text("run", content, scenario.files)
 
 
 def summary_of(
@@ -62,7 +70,6 @@ def summary_of(
     return {
         "title": scenario.title,
         "scenario": str(scenario.path),
-        "version": _core.__version__,
         "complete": record.complete,
         "ended": record.ended,
         "duration_s": float(record.time[-1]) if record.time.size else 0.0,

@@ -54,6 +54,14 @@ class Scenario:
     sea: SeaTable | None
     output: OutputTable
     every: float  #: s between rows of the output
+    rig: Path | None = None  #: the rig file whose parameters it takes
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """Every file that is read with it: itself, and the rig and the deck motion that it names."""
+        deck, where = self.deck_motion, self.where("deck_motion", "file")
+        motion = None if deck is None else find_file(deck.file, self.path, where)
+        return tuple(f for f in (self.path, self.rig, motion) if f is not None)
 
     @property
     def period(self) -> float:
@@ -119,6 +127,7 @@ def scenario_from(
         sea=file.sea,
         output=file.output,
         every=max(every, params.control_period),
+        rig=_rig_file(file, path),
     )
 
 
@@ -207,11 +216,17 @@ def _parameters(file: ScenarioFile, path: Path) -> dict[str, float]:
     }
 
 
+def _rig_file(file: ScenarioFile, path: Path) -> Path | None:
+    if file.rig is None:
+        return None
+    return (path.parent / Path(file.rig.file).expanduser()).resolve()
+
+
 def _rig_parameters(file: ScenarioFile, path: Path) -> dict[str, float]:
     """The values under [parameters] of a rig file; its records need not be there."""
-    if file.rig is None:
+    rig = _rig_file(file, path)
+    if rig is None:
         return {}
-    rig = (path.parent / Path(file.rig.file).expanduser()).resolve()
     entries = read_toml(rig, "rig").get("parameters", {})
     values = {
         name: entry.get("value") if isinstance(entry, Mapping) else entry

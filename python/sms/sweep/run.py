@@ -6,7 +6,6 @@ on where it was; the whole one is sweep.parquet.
 
 from __future__ import annotations
 
-import json
 import math
 import multiprocessing
 import os
@@ -25,6 +24,7 @@ from sms import StatusError
 from sms.callbacks import Progress
 from sms.cluster import client_of
 from sms.errors import InputError
+from sms.io.json_files import from_json_line, json_line
 from sms.io.write import write_parquet, write_text_atomically
 from sms.parameters import PARAMETERS
 from sms.scenario.command import command_of
@@ -95,7 +95,7 @@ def run_sweep(
     if left:
         with (out / PARTIAL).open("a", encoding="utf-8") as file:
             if not done and file.tell() == 0:
-                file.write(json.dumps({"sweep": sweep.digest}) + "\n")
+                file.write(json_line("sweep", {"sweep": sweep.digest}))
             results = (
                 _on_cluster(sweep, left, scheduler)
                 if scheduler is not None
@@ -103,7 +103,7 @@ def run_sweep(
             )
             for variant, row in results:
                 done[variant] = row
-                file.write(json.dumps({"variant": variant, **row}) + "\n")
+                file.write(json_line("sweep", {"variant": variant, **row}))
                 file.flush()
                 tell(f"{len(done)} of {count} variants", len(done) / count)
     table = _table(sweep, done)
@@ -163,8 +163,8 @@ def _resumed(sweep: Sweep, partial: Path) -> dict[int, dict[str, Any]]:
     rows: list[dict[str, Any]] = []
     for line in lines:
         try:
-            rows.append(json.loads(line))
-        except json.JSONDecodeError:
+            rows.append(from_json_line(line))
+        except ValueError:
             break
     if not rows:
         partial.unlink()
@@ -173,7 +173,7 @@ def _resumed(sweep: Sweep, partial: Path) -> dict[int, dict[str, Any]]:
         raise InputError(
             f"{partial}: left by another sweep; choose another folder with --out, or remove the file"
         )
-    write_text_atomically(partial, "".join(json.dumps(row) + "\n" for row in rows))
+    write_text_atomically(partial, "".join(json_line("sweep", row) for row in rows))
     return {int(row.pop("variant")): row for row in rows[1:]}
 
 

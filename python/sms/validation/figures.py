@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import tomllib
 from collections.abc import Iterable
@@ -10,6 +9,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 from sms.arrays import Array
+from sms.io.json_files import json_text
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,8 @@ class Row:
 
 
 def rows_to_json(rows: Iterable[Row]) -> str:
-    """A list of objects, one a row."""
-    return json.dumps([row.to_dict() for row in rows], indent=1, allow_nan=False) + "\n"
+    """A JSON file with an object a row."""
+    return json_text("validation", {"rows": [row.to_dict() for row in rows]})
 
 
 def _band(low: float, high: float) -> str:

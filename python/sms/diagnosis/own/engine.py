@@ -6,7 +6,6 @@ model declares.
 
 from __future__ import annotations
 
-import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -29,6 +28,7 @@ from sms.estimation.kind import Kind
 from sms.estimation.noise import sample_noise
 from sms.estimation.problem import WindowProblem
 from sms.estimation.run import Run
+from sms.io.json_files import versions
 from sms.io.rig import DataLayout, Declaration, Rig
 from sms.io.write import write_text_atomically
 from sms.parameters import Parameter
@@ -81,11 +81,7 @@ def diagnose_model(
         findings=faults,
         records={r.name: r.role for r in records},
         seed=seed,
-        versions={
-            "sms": _core.__version__,
-            "python": platform.python_version(),
-            "numpy": np.__version__,
-        },
+        versions=versions(),
     )
     if faults:
         return replace(blank, verdict="data-fault", sentence=wording.data_fault(faults))
