@@ -21,10 +21,21 @@ def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     return result
 
 
+HEAD = ("schema", "schema_version", "versions")
+
+
 def test_ik_prints_what_python_computes(tmp_path: Path) -> None:
     values = json.loads(run("ik", *IK, "--json", cwd=tmp_path).stdout)
     found = sms.inverse_kinematics(0.05, -0.02, 0.5)
-    assert list(values) == ["extension_m", "yaw_rad", "x_m", "y_m", "iterations", "residual_m"]
+    assert list(values) == [
+        *HEAD,
+        "extension_m",
+        "yaw_rad",
+        "x_m",
+        "y_m",
+        "iterations",
+        "residual_m",
+    ]
     assert values["extension_m"] == list(found.extension)
     assert (values["yaw_rad"], values["x_m"], values["y_m"]) == (found.yaw, found.x, found.y)
     assert values["iterations"] == found.iterations and values["residual_m"] < 1e-14
@@ -44,6 +55,7 @@ def test_fk_prints_what_python_computes(tmp_path: Path) -> None:
     values = json.loads(run(*extension, "--json", cwd=tmp_path).stdout)
     found = sms.forward_kinematics([0.2, 0.21, 0.19])
     assert list(values) == [
+        *HEAD,
         *("roll_rad", "pitch_rad", "height_m", "yaw_rad", "x_m", "y_m"),
         *("iterations", "residual_m"),
     ]
