@@ -2,6 +2,7 @@
 
 from sms import _dispatch  # noqa: F401  # first: decides which copy of the core sms._core is
 from sms._core import (
+    Channel,
     NotANumberError,
     NotConvergedError,
     OutOfRangeError,
@@ -48,6 +49,7 @@ from sms.simulation import (
 from sms.views import notebook_progress
 
 __all__ = [
+    "Channel",
     "Energies",
     "ForwardKinematics",
     "InverseKinematics",

@@ -3226,7 +3226,7 @@ def valve_table(law: str) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
     """
     The rows of a measured table, arrays (28,): spool [m], opening [V], charge_ and discharge_ C [m^3/(s Pa)], b, m.
     """
-__version__: str = '0.1.0'
-build_info: str = 'libsms 0.1.0 float+double c++201402L no-exceptions no-rtti'
+__version__: str = '0.2.0'
+build_info: str = 'libsms 0.2.0 float+double c++201402L no-exceptions no-rtti'
 has_estimation: bool = True
 largest_angle: float = 0.6

@@ -56,7 +56,7 @@ const char *sms_status_string(sms_status status);
 const char *sms_version(void);
 
 /* How the library was built: version, scalar types, C++ level, exceptions and RTTI, e.g.
- * "libsms 0.1.0 float+double c++14 no-exceptions no-rtti". */
+ * "libsms 0.2.0 float+double c++14 no-exceptions no-rtti". */
 const char *sms_build_info(void);
 
 /* ---- parameters (params.def) ----------------------------------------------------------------------------------- */
