@@ -201,6 +201,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, help="folder for report.html and diagnosis.json")
     parser.add_argument("--empirical", action="store_true", help="carry an unknown's curve along")
+    parser.add_argument("--picture", type=Path, help="file for the picture, which needs matplotlib")
     options = parser.parse_args()
     for case in (options.case,) if options.case else CASES:
         answer = diagnose(case, options.seed, options.empirical)
@@ -213,6 +214,23 @@ def main() -> None:
             )
         if options.out is not None:
             own.write_diagnosis(answer, options.out / case)
+        if options.picture is not None:
+            draw(answer, options.picture)
+
+
+def draw(answer: Diagnosis, picture: Path) -> None:
+    """The error of both levels on a record that was not fitted, as declared and with the causes."""
+    import matplotlib.pyplot as plt  # noqa: PLC0415 (needed for the picture alone)
+
+    shown = [s for s in answer.series if s.role == "validate"][:2]
+    figure, axes = plt.subplots(len(shown), 1, figsize=(8, 5), sharex=True, layout="constrained")
+    for axis, series in zip(axes, shown, strict=True):
+        for label, model in (("as declared", series.baseline), ("extended", series.extended)):
+            axis.plot(series.time, 1e3 * (series.measured - model), label=label)
+        axis.set(ylabel=f"{series.signal}, error [mm]", title=f"{series.record}, not fitted")
+    axes[0].legend()
+    axes[-1].set(xlabel="time [s]")
+    figure.savefig(picture)
 
 
 if __name__ == "__main__":

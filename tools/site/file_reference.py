@@ -1,0 +1,115 @@
+"""Reference of the TOML files, from the JSON schemas that `sms schema` writes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from sms import schemas
+
+from tools.site.prose import escaped, indented, restructured, title
+
+Schema = Mapping[str, Any]
+HEADS = {
+    "rig": "Every table and key of a rig file, from the schema that ``sms schema rig`` writes and by which editors "
+    "complete and check. What they are for and complete examples: :doc:`/rig_file`.",
+    "scenario": "Every table and key of a scenario, from the schema that ``sms schema scenario`` writes. What they are "
+    "for: :doc:`/simulation`.",
+}
+
+
+def pages() -> Iterator[tuple[str, str]]:
+    """(name, text) of every page."""
+    for subject in schemas.SUBJECTS:
+        schema = json.loads(schemas.shipped(subject))
+        label = {"rig": "Keys of a rig file", "scenario": "Keys of a scenario"}[subject]
+        out = [*title(label), HEADS[subject], ""]
+        for name, entry in schema["properties"].items():
+            out += _table(name, entry, schema, name in schema.get("required", ()))
+        yield f"files/{subject}", "\n".join(out) + "\n"
+
+
+def _resolved(entry: Schema, schema: Schema) -> Schema:
+    while "$ref" in entry:
+        entry = schema["$defs"][entry["$ref"].rpartition("/")[2]]
+    for choice in entry.get("anyOf", ()):
+        if "$ref" in choice and "properties" in _resolved(choice, schema):
+            return _resolved(choice, schema)
+    return entry
+
+
+def _table(name: str, entry: Schema, schema: Schema, required: bool) -> Iterator[str]:
+    of = _resolved(entry, schema)
+    if of.get("type") == "array":
+        yield from title(f"[[{name}]]", "-")
+        of = _resolved(of["items"], schema)
+    else:
+        yield from title(f"[{name}]", "-")
+    if required:
+        yield from ("Required.", "")
+    for variant in of.get("oneOf", (of,)):
+        one = _resolved(variant, schema)
+        if "description" in one:
+            yield from (*restructured(_without_name(str(one["description"])).split("\n")), "")
+        for key, value in one.get("properties", {}).items():
+            yield from _key(name, key, value, schema, key in one.get("required", ()))
+        for pattern in one.get("patternProperties", {}):
+            yield from (f"Also, of one leg of the platform: ``{pattern}``.", "")
+
+
+def _without_name(text: str) -> str:
+    """A table's docstring begins with its name, "[rig]: ...", which is the heading here."""
+    head, colon, rest = text.partition("]: ")
+    return rest[:1].upper() + rest[1:] if colon and head.startswith("[") else text
+
+
+def _key(table: str, key: str, value: Schema, schema: Schema, required: bool) -> Iterator[str]:
+    yield from (
+        f".. describe:: {key}",
+        "",
+        *indented([f"*{_kind(value, schema)}*" + _rest(value, required)]),
+        "",
+    )
+    if text := value.get("description", ""):
+        yield from (*indented(restructured(text.split("\n"))), "")
+    of = _resolved(value, schema)
+    if "properties" in of and table not in ("signals", "parameters"):
+        for inner, entry in of["properties"].items():
+            told = f"``{inner}``: *{_kind(entry, schema)}*" + _rest(
+                entry, inner in of.get("required", ())
+            )
+            yield from (f"   - {told}",)
+        yield ""
+
+
+def _rest(value: Schema, required: bool) -> str:
+    if required:
+        return ", required"
+    default = value.get("default")
+    return (
+        ""
+        if default is None or isinstance(default, dict)
+        else f", default ``{json.dumps(default)}``"
+    )
+
+
+def _kind(value: Schema, schema: Schema) -> str:
+    """A type in words."""
+    if "enum" in value:
+        return escaped(", ".join(str(v) for v in value["enum"]))
+    if "const" in value:
+        return escaped(str(value["const"]))
+    if "$ref" in value:
+        name = value["$ref"].rpartition("/")[2]
+        of = schema["$defs"][name]
+        return _kind(of, schema) if "anyOf" in of or "enum" in of else "table"
+    if "anyOf" in value:
+        kinds = [_kind(v, schema) for v in value["anyOf"] if v.get("type") != "null"]
+        return " or ".join(dict.fromkeys(kinds))
+    kind = value.get("type", "any")
+    if isinstance(kind, list):
+        return "text with a unit, or number"
+    if kind == "array":
+        return f"list of {_kind(value.get('items', {}), schema)}"
+    return {"string": "text", "object": "table", "boolean": "true or false"}.get(kind, str(kind))
