@@ -95,15 +95,14 @@ def _normal(name: str) -> str:
 
 def _licence(of: importlib.metadata.Distribution) -> list[dict[str, Any]]:
     """As the package states it: an SPDX expression, or a name."""
-    stated = of.metadata.get("License-Expression")
-    if stated:
-        return [{"expression": stated}]
+    if "License-Expression" in of.metadata:
+        return [{"expression": of.metadata["License-Expression"]}]
     classified = [
         c.rpartition(" :: ")[2]
         for c in of.metadata.get_all("Classifier") or ()
         if "License ::" in c
     ]
-    text = (of.metadata.get("License") or "").strip()
+    text = (of.metadata.get_all("License") or [""])[0].strip()
     name = ", ".join(classified) or (text if text and "\n" not in text and len(text) < 80 else "")
     return [{"license": {"name": name}}] if name else []
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import sms
 from sms.identification.flow import fit_records
-from sms.identification.flow_known import COMPONENT
+from sms.identification.flow_problem import COMPONENT
 from sms.identification.flow_rig import load_flow_test
 from sms.io import write_table
 
@@ -43,7 +43,7 @@ conditions = {{ spool_position = "{spool} m" }}
 
 params = sms.Params()
 sensor = sms.Channel(noise=300.0, resolution=1e6 / 2**12)
-runs = {}
+runs: dict[str, sms.Run] = {}
 
 with tempfile.TemporaryDirectory() as folder:
     text = RIG.format(volume=params.tank_volume, spread=0.004 * params.tank_volume)
@@ -65,7 +65,7 @@ with tempfile.TemporaryDirectory() as folder:
     rig, records, _findings = load_flow_test(Path(folder) / "rig.toml")
     fits = fit_records(records, rig.declared, rig.model.chambers)
 
-volts = np.array([float(name.split()[2]) for name in runs])
+commands = np.array([float(name.split()[2]) for name in runs])
 unit_flow = params.supply_pressure * params.reference_density
 unit_flow *= np.sqrt(params.reference_temperature / params.air_temperature)
 settled = round(1.1 / params.control_period)  # the spool has come to rest, and the flow is choked
@@ -87,8 +87,10 @@ if options.picture:
     axes[0].legend()
     value = np.array([c.value for c, _ in found])
     interval = np.abs([[c.lower for c, _ in found], [c.upper for c, _ in found]] - value)
-    axes[1].errorbar(volts, UNIT * value, UNIT * interval, fmt="o", capsize=4, label="identified")
-    axes[1].plot(volts, UNIT * np.array(simulated), "k_", markersize=16, label="simulated")
+    axes[1].errorbar(
+        commands, UNIT * value, UNIT * interval, fmt="o", capsize=4, label="identified"
+    )
+    axes[1].plot(commands, UNIT * np.array(simulated), "k_", markersize=16, label="simulated")
     axes[1].set(xlabel="valve command [V]", ylabel="C [dm^3/(s bar)]")
     axes[1].legend()
     figure.savefig(options.picture)

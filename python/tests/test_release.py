@@ -63,7 +63,7 @@ def test_the_source_archive_builds_without_git(tmp_path: Path) -> None:
         [sys.executable, "-m", "tools.release", "sdist"],
         cwd=ROOT, check=True, capture_output=True, text=True,
     )  # fmt: skip
-    archive = Path(done.stdout.rpartition(": ")[0])
+    archive = Path(done.stdout.splitlines()[-1].rpartition(": ")[0])
     with tarfile.open(archive) as opened:
         names = opened.getnames()
         opened.extractall(tmp_path, filter="data")

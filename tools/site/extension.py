@@ -28,14 +28,30 @@ class PictureGrid(Directive):
         return [nodes.raw("", f'<div class="picture-grid">{"".join(cells)}</div>', format="html")]
 
 
-def process(_app: Any, what: str, _name: str, _obj: Any, _options: Any, lines: list[str]) -> None:
+class Prose:
     """Docstrings are prose, not markup."""
-    lines[:] = docstring(lines)
-    if what in ("property", "attribute"):  # napoleon takes words before a colon there for a type
-        lines.insert(0, "")
+
+    def __init__(self) -> None:
+        self.kept: list[str] | None = None
+
+    def before(
+        self, _app: Any, what: str, _name: str, _obj: Any, _options: Any, lines: list[str]
+    ) -> None:
+        """Before napoleon, which makes fields of what stands under "Args:" and its like."""
+        lines[:] = docstring(lines)
+        self.kept = list(lines) if what in ("property", "attribute") else None
+
+    def after(
+        self, _app: Any, _what: str, _name: str, _obj: Any, _options: Any, lines: list[str]
+    ) -> None:
+        """Of a property napoleon takes the words before a colon for a type: they are words again."""
+        if self.kept is not None:
+            lines[:] = self.kept
 
 
 def setup(app: Any) -> None:
     """Register both."""
+    prose = Prose()
     app.add_directive("grid-of-pictures", PictureGrid)
-    app.connect("autodoc-process-docstring", process, priority=1)
+    app.connect("autodoc-process-docstring", prose.before, priority=1)
+    app.connect("autodoc-process-docstring", prose.after, priority=900)

@@ -61,7 +61,7 @@ def run(example: Example, out: Path) -> str:
 
 
 def run_c(example: Example, out: Path) -> str:
-    """The same of the companion in C, compiled against the archive of the build, else against its sources."""
+    """The same of the companion in C, linked with the archive of the build."""
     program = out / Path(example.c).stem
     archive = ROOT / "build" / "package" / "libsms" / "libsms.a"
     include = ROOT / "libsms" / "include"
