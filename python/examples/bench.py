@@ -1,6 +1,6 @@
 """One actuator on the bench: the valve opens by a volt to one side and the other, the piston follows.
 
-Around its centre the valve passes little: 0.3 V beside it hardly moves the piston. The run is a table with the
+Around its centre the valve passes little: 0.3 V beside it the piston creeps. The run is a table with the
 truth, and beside it what the sensors say.
 """
 

@@ -1,8 +1,7 @@
 """A desk drives the virtual rig over a CAN bus: take control, stream a roll, read what the controller reports.
 
 The rig is the firmware's own application around a simulated platform, and the bus is python-can's virtual one; with
-`socketcan` and `can0` in its place the same desk drives a real rig. Time is simulated here, so the 16 s of the motion
-take about a second.
+`socketcan` and `can0` in its place the same desk drives a real rig. Time is simulated here: nothing waits.
 """
 
 import argparse
