@@ -29,8 +29,9 @@ from tools.site import (
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "build" / "docs"
 OUTSIDE = re.compile(r"\]\(((?:validation|libsms|python)/[^)]*(?<!\.md))\)")
-PAGE = re.compile(r"\]\(((?:validation|libsms|python)/[^)]*\.md)\)")
-LINKED = ("libsms", "python", "validation", "README.md", "CHANGELOG.md", "LICENSE")
+PAGE = re.compile(r"\]\((validation/[^)]*\.md)\)")
+UNLINKED = re.compile(r"\[([^\]]+)\]\((?:libsms|python)/[^)]*\.md\)")
+LINKED = ("libsms", "packaging", "python", "validation", "README.md", "CHANGELOG.md", "LICENSE")
 """What pages refer to outside their folder."""
 
 
@@ -62,7 +63,7 @@ def stage(out: Path, declared: dict[str, list[cpp_reference.Declaration]]) -> No
     wanted_files: set[Path] = set()
     for name in ("README", "CHANGELOG"):
         text = (ROOT / f"{name}.md").read_text(encoding="utf-8")
-        text = OUTSIDE.sub(r"](../\1)", text.replace("](docs/", "]("))
+        text = OUTSIDE.sub(r"](../\1)", UNLINKED.sub(r"\1", text.replace("](docs/", "](")))
         for page in PAGE.findall(text):
             wanted_files.add(_put(source / page, (ROOT / page).read_bytes()))
         wanted_files.add(_put(source / f"{name.lower()}.md", text.encode()))
