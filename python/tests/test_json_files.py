@@ -28,6 +28,7 @@ from sms.validation import FIGURES, rows_to_json
 ROOT = Path(__file__).parents[2]
 ELSEWHERE = {
     "python/sms/io/json_files.py": "the one place",
+    "python/sms/demo/sealed.py": "the truth under a seal, whose bytes are hashed",
     "python/sms/report/page.py": "data inside a page",
     "python/sms/schemas/__init__.py": "a JSON schema, which says by $schema what it is",
     "python/sms/sweep/plan.py": "a digest",

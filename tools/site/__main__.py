@@ -31,7 +31,16 @@ OUT = ROOT / "build" / "docs"
 OUTSIDE = re.compile(r"\]\(((?:validation|libsms|python)/[^)]*(?<!\.md))\)")
 PAGE = re.compile(r"\]\((validation/[^)]*\.md)\)")
 UNLINKED = re.compile(r"\[([^\]]+)\]\((?:libsms|python)/[^)]*\.md\)")
-LINKED = ("libsms", "packaging", "python", "validation", "README.md", "CHANGELOG.md", "LICENSE")
+LINKED = (
+    ".github",
+    "libsms",
+    "packaging",
+    "python",
+    "validation",
+    "README.md",
+    "CHANGELOG.md",
+    "LICENSE",
+)
 """What pages refer to outside their folder."""
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import secrets
 import sys
@@ -75,6 +74,7 @@ def demo(
     """
     from sms.demo.folder import check_demo_folder  # noqa: PLC0415 (scipy takes a second; --help must not)
     from sms.errors import InputError  # noqa: PLC0415
+    from sms.io.json_files import json_text  # noqa: PLC0415
     from sms.io.write import check_output_folder, write_text_atomically  # noqa: PLC0415
 
     if real and (seed is not None or effect is not None):
@@ -90,7 +90,7 @@ def demo(
             out, secrets.randbelow(LARGEST_SEED) if seed is None else seed, effect, console
         )
     if as_json is not None:
-        write_text_atomically(as_json, json.dumps(told, indent=1) + "\n")
+        write_text_atomically(as_json, json_text("demo", told))
     page = out / (f"{REAL[0]}/report.html" if real else "report.html")
     open_page(page, show, console)
 

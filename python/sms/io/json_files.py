@@ -26,6 +26,7 @@ from sms import _core
 
 SCHEMA_VERSIONS: Mapping[str, int] = {
     "comparison": 1,
+    "demo": 1,
     "diagnosis": 1,
     "forward_kinematics": 1,
     "identify_actuator": 1,
