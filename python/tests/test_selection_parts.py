@@ -114,7 +114,7 @@ def test_pairs_are_filled_up_with_what_was_not_fitted(monkeypatch: pytest.Monkey
 
 
 def test_several_names_of_one_change_take_one_of_the_places_that_are_fitted() -> None:
-    """A zero, a gain and a supply's setting shift one reading alike: a supply that droops was fitted after them only."""
+    """A zero, a gain and a setting shift one reading alike: the supply that droops came after them, not fitted."""
     shift, droop, other, fourth = np.eye(4)
     current = cast(Any, "model as it stands")
     steps = [

@@ -49,7 +49,7 @@ def demo(
     effect: Annotated[
         str | None,
         typer.Option(
-            help="What to hide: fitting_leakage, moving_mass, tube or sensor_lag. Drawn if left out."
+            help="What to hide: fitting_leakage, supply_droop, moving_mass, tube or sensor_lag. Drawn if left out."
         ),
     ] = None,
     show: Annotated[

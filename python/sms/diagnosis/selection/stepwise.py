@@ -74,16 +74,10 @@ def try_effects(
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     steps = best_steps(effects, current, data)
-    by_step = chosen_by_step(steps)
-    by_slope = first_of_each(
-        [int(k) for k in np.argsort(-promise) if promise[k] > 0.0], scores.cosine > ALIKE
-    )[:TRIED_BY_SLOPE]
-    chosen = list(dict.fromkeys(by_step + by_slope))
-    chosen += [
-        k
-        for k in range(len(effects))
-        if k not in chosen and np.any(scores.cosine[k, chosen] > ALIKE)
-    ]
+    alike = scores.cosine > ALIKE
+    by_slope = first_of_each([int(k) for k in np.argsort(-promise) if promise[k] > 0.0], alike)
+    chosen = dict.fromkeys(chosen_by_step(steps) + by_slope[:TRIED_BY_SLOPE])
+    chosen |= dict.fromkeys(np.flatnonzero(alike[by_slope[0]]).tolist() if by_slope else ())
 
     def candidate(k: int) -> Fitted:
         return lean(
@@ -92,13 +86,16 @@ def try_effects(
 
     first = {k: candidate(k) for k in chosen}
     best = min(first, key=lambda k: logarithms(data.identify, first[k].fit.residual))
-    first |= {
-        k: candidate(k)
+    rivals = [
+        k
         for k, effect in enumerate(effects)
-        if k not in first
-        and effect.block == effects[best].block
-        and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
-    }
+        if alike[k, best]
+        or (
+            effect.block == effects[best].block
+            and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
+        )
+    ]
+    first |= {k: candidate(k) for k in rivals if k not in first}
     current = looked_at_again(current, data)
     before = refitted(current, data).fit.residual ** 2
     trials = []
