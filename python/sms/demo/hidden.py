@@ -17,7 +17,7 @@ HIDEABLE: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
         "fitting_leakage:lower": (1e-8, 2e-8),  # kg/(s Pa)
         "fitting_leakage:upper": (1e-8, 2e-8),
-        "supply_droop": (4e6, 1.2e7),  # Pa s/kg
+        "supply_droop": (1e7, 2.5e7),  # Pa s/kg
         "moving_mass": (20.0, 40.0),  # kg
         "tube": (4.0, 8.0),  # m
         "sensor_lag:extension": (0.03, 0.06),  # s
