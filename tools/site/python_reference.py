@@ -18,6 +18,7 @@ MODULES = (
     "sms.errors",
     "sms.io",
     "sms.io.json_files",
+    "sms.data",
     "sms.draft",
     "sms.schemas",
     "sms.diagnosis",
