@@ -22,7 +22,7 @@
 
 #include "estimation/measured_motion.hpp"
 #include "sms/integrate.hpp"
-#include "sms/platform.hpp"
+#include "sms/dynamics.hpp"
 
 namespace sms {
 namespace estimation {
