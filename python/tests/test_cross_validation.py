@@ -54,6 +54,7 @@ def _slow_aside(kind: int, time: Array, setpoint: object = plant_support.setpoin
 needs_fit = pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
 
 
+@pytest.mark.full
 @needs_fit
 def test_friction_at_high_speed_is_named_from_the_fitted_records_alone_and_said_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

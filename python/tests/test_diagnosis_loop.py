@@ -178,6 +178,7 @@ def names_the_gain(answer: Diagnosis, gain: float) -> str:
     return answer.hidden.equation
 
 
+@pytest.mark.full
 def test_a_gain_that_is_not_as_said_is_named_with_its_value(tmp_path: Path) -> None:
     gain = 9.6
     answer = diagnose(write_bench(tmp_path, 3, {"proportional_gain": gain}, in_loop=True))

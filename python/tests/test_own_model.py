@@ -214,6 +214,7 @@ def test_the_example_says_what_is_wrong_with_its_tanks(case: str, tmp_path: Path
     assert ('id="empirical"' in text) == (case == "overflow")
 
 
+@pytest.mark.full
 def test_the_curve_of_an_unknown_is_carried_to_a_record_at_rest() -> None:
     """The pump runs evenly and both levels stand still below the rim: no curve over a level is to be seen there."""
     *moving, last = tanks.measured("overflow", 1)

@@ -53,6 +53,7 @@ def fitted_to(
 # ---- halves --------------------------------------------------------------------------------------
 
 
+@pytest.mark.full
 def test_a_leak_that_opens_at_a_pressure_is_another_law(tmp_path: Path) -> None:
     leak = "fitting_leakage of lower"
     data, fitted = fitted_to(tmp_path, "bench", "check_valve_leak", 5, leak, multiple=2.0)

@@ -77,6 +77,7 @@ def test_a_healthy_bench_leaves_hardly_more_than_noise_and_a_leaking_one_more(
     assert left == [True, False]
 
 
+@pytest.mark.full
 def test_a_leak_that_the_maps_could_make_up_for_is_named_since_they_would_be_far_off(
     tmp_path: Path,
 ) -> None:
@@ -224,6 +225,7 @@ def test_with_reference_records_a_sensor_gain_is_found_that_other_numbers_can_ma
     assert [p.value for p in sizes] == [pytest.approx(0.04, abs=0.01)]
 
 
+@pytest.mark.full
 def test_with_records_of_the_healthy_machine_a_change_within_what_is_declared_is_found(
     tmp_path: Path,
 ) -> None:
