@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "estimation/measured_motion.hpp"
-#include "sms/integrate.hpp"
 #include "sms/dynamics.hpp"
+#include "sms/integrate.hpp"
 
 namespace sms {
 namespace estimation {
