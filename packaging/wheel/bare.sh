@@ -3,18 +3,20 @@
 #
 #   packaging/wheel/bare.sh WHEELS SUITE [MIRROR]
 #
-# Installs Debian's or Ubuntu's SUITE with Python into a folder under /tmp (debootstrap fetches about 60 MB from MIRROR,
-# by default this machine's; the folder is kept, and used again), then in it: pip installs the wheel of the folder WHEELS
+# Installs Debian's or Ubuntu's SUITE with Python into WHEELS/bare (debootstrap fetches about 60 MB from MIRROR, by
+# default this machine's; the folder is kept, and used again), then in it: pip installs the wheel of the folder WHEELS
 # that fits, with its dependencies from the package index, and `sms demo` runs. Needs root.
 set -eu
 [ $# = 2 ] || [ $# = 3 ] || { echo "usage: $0 WHEELS SUITE [MIRROR]" >&2; exit 2; }
 wheels=$1 suite=$2
-system=${SMS_BARE:-/tmp/sms-bare}/$suite
 
 fail() {
   printf '%s: %s\n' "$0" "$*" >&2
   exit 1
 }
+
+[ -n "$(find "$wheels" -maxdepth 1 -name 'sms-*.whl' 2>/dev/null)" ] || fail "there is no wheel in $wheels; ./dev wheel makes one"
+system=$(cd "$wheels" && pwd)/bare/$suite
 
 [ "$(id -u)" = 0 ] || fail "a system of its own (chroot) needs root"
 if [ ! -e "$system/made" ]; then
@@ -35,14 +37,14 @@ if [ ! -e "$system/made" ]; then
 fi
 
 # The wheels, and what a machine behind a proxy needs to reach the package index: its name server and certificates.
-rm -rf "$system/root/try"
-mkdir -p "$system/root/try"
-cp "$wheels"/sms-*.whl "$system/root/try"
+rm -rf "$system/try"
+mkdir -p "$system/try"
+cp "$wheels"/sms-*.whl "$system/try"
 cp /etc/resolv.conf "$system/etc/resolv.conf"
-cp /etc/ssl/certs/ca-certificates.crt "$system/root/try/certificates.crt"
-cat >"$system/root/try/run" <<'END'
+cp /etc/ssl/certs/ca-certificates.crt "$system/try/certificates.crt"
+cat >"$system/try/run" <<'END'
 set -eu
-cd /root/try
+cd /try
 . /etc/os-release
 echo "$PRETTY_NAME, $(python3 -V), $(ldd --version | sed -n '1s/.* /glibc /p')"
 for tool in cc c++ gcc g++ clang cmake make ninja; do
@@ -66,5 +68,5 @@ END
 # Mounts of its own, which end with it.
 unshare --mount sh -c '
   mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" &&
-    exec chroot "$1" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 PIP_CERT=/root/try/certificates.crt \
-      ${SMS_AVX2+SMS_AVX2="$SMS_AVX2"} sh /root/try/run' sh "$system"
+    exec chroot "$1" env -i HOME=/try PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 PIP_CERT=/try/certificates.crt \
+      ${SMS_AVX2+SMS_AVX2="$SMS_AVX2"} sh /try/run' sh "$system"

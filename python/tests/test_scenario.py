@@ -313,6 +313,7 @@ def test_at_the_prompt_bad_input_is_one_sentence_and_nothing_is_written(tmp_path
     result = command("simulate", "scenario.toml", "--out", "out", cwd=tmp_path)
     refused(result, "scenario.toml, [excitation] amplitude", "0 to 400 mm")
     refused(command("simulate", "gone.toml", cwd=tmp_path), "there is no such scenario file")
+    refused(command("simulate", "waves_3013", cwd=tmp_path), "none is shipped under that name")
     scenario(tmp_path)
     result = command("simulate", "scenario.toml", "--scale", "40", cwd=tmp_path)
     refused(result, "no [deck_motion] to scale")

@@ -69,16 +69,20 @@ def left(answer: Diagnosis) -> float:
     return float(np.sqrt(np.mean([g.extended_rms**2 for g in answer.gain])))
 
 
-def main() -> None:
+def main() -> int:
     """Print the table."""
+    asked = [Path(name) for name in sys.argv[1:]]
     print(
         "| seal | causes | unseen, declared [N] | extended [N] | least squares: gain [N] | zero offset [N] |"
     )
     print("|---|---|---|---|---|---|")
-    for path in map(Path, sys.argv[1:]) if sys.argv[1:] else map(rig_file, SEALS):
+    for path in asked or map(rig_file, SEALS):
         try:
             answer = diagnose(path)
         except InputError as error:
+            if asked:
+                print(f"seals: {error}", file=sys.stderr)
+                return 2
             print(f"{path.stem}: left out, {error}", file=sys.stderr)
             continue
         rig = load_rig(path)
@@ -92,7 +96,8 @@ def main() -> None:
             f"| {answer.title} | {causes} | {before:.2f} | {left(answer):.2f} | {plain} |",
             flush=True,
         )
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sms.errors import InputError
+from sms.errors import InputError, did_you_mean
 
 FOLDER = Path(__file__).parent
 CYLINDER = FOLDER / "cylinder_friction_zillen"
@@ -18,8 +18,17 @@ SCENARIOS = {path.stem: path for path in sorted(WAVES.glob("*.toml"))}
 
 
 def scenario_file(named: Path) -> Path:
-    """A user's file, or where there is none of that name the scenario that is shipped under it."""
-    return named if named.exists() else SCENARIOS.get(str(named), named)
+    """A user's file, or where there is none of that name the scenario that is shipped under it. InputError for a bare
+    name that is neither.
+    """
+    if named.exists() or named.suffix or len(named.parts) > 1:
+        return named
+    if str(named) not in SCENARIOS:
+        raise InputError(
+            f"{named}: there is no such scenario file, and none is shipped under that name; "
+            f"{did_you_mean(str(named), SCENARIOS)}"
+        )
+    return SCENARIOS[str(named)]
 
 
 def cylinder_rig(name: str) -> Path:

@@ -51,6 +51,7 @@ from sms.diagnosis.selection.judgement import (
 )
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.pairs import try_pairs
+from sms.diagnosis.selection.score_test import ScoreTests
 from sms.diagnosis.thresholds import (
     ALIKE,
     CANDIDATE_STEPS,
@@ -71,6 +72,34 @@ def try_effects(
     initial states that the trials have found.
     """
     scores = score_effects(current, data, effects, rng)
+    first = _promising(current, data, effects, scores)
+    current = looked_at_again(current, data)
+    before = refitted(current, data).fit.residual ** 2
+    trials = []
+    for k, effect in enumerate(effects):
+        by_score = float(scores.p_value[k])
+        trial = Trial(effect, current, by_score, before, identified=current.fit.residual**2)
+        if k in first:
+            fitted = first[k]
+            trial = Trial(
+                effect,
+                fitted,
+                by_score,
+                refitted(fitted, data).fit.residual ** 2,
+                identified=fitted.fit.residual**2,
+            )
+        else:
+            trial.reason = "promises less than others of this round, by slope and by finite steps"
+        trials.append(trial)
+    return current, trials
+
+
+def _promising(
+    current: Fitted, data: Data, effects: Sequence[Effect], scores: ScoreTests
+) -> dict[int, Fitted]:
+    """By index the effects that are fitted: the best by finite steps and by slope, each in a direction of its own, then
+    what is alike to the best of them or acts in its equation.
+    """
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     steps = best_steps(effects, current, data)
@@ -95,26 +124,7 @@ def try_effects(
             and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
         )
     ]
-    first |= {k: candidate(k) for k in rivals if k not in first}
-    current = looked_at_again(current, data)
-    before = refitted(current, data).fit.residual ** 2
-    trials = []
-    for k, effect in enumerate(effects):
-        by_score = float(scores.p_value[k])
-        trial = Trial(effect, current, by_score, before, identified=current.fit.residual**2)
-        if k in first:
-            fitted = first[k]
-            trial = Trial(
-                effect,
-                fitted,
-                by_score,
-                refitted(fitted, data).fit.residual ** 2,
-                identified=fitted.fit.residual**2,
-            )
-        else:
-            trial.reason = "promises less than others of this round, by slope and by finite steps"
-        trials.append(trial)
-    return current, trials
+    return first | {k: candidate(k) for k in rivals if k not in first}
 
 
 def _fitted(
