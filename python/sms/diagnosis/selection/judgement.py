@@ -214,9 +214,12 @@ def _leaves_much(trial: Trial, needed: float) -> str:
 
 
 def _taken(trial: Trial) -> str:
+    seen, unseen = (
+        f"{100.0 * share:.0f}".replace("-", "−") for share in (trial.seen_share, trial.gain)
+    )
     return (
-        f"takes {100.0 * trial.seen_share:.0f} % of what is left on the identification records and "
-        f"{100.0 * trial.gain:.0f} % on the validation records"
+        f"takes {seen} % of what is left on the identification records and "
+        f"{unseen} % on the validation records"
     )
 
 
