@@ -36,6 +36,8 @@ class Base:
 
 OUT = ("--out", "out")
 RIG = ("rig.toml", *OUT)
+PAIR = ("record.csv", "other.csv")
+DRAFT = ("--yes", "--out", "out/rig.toml")
 BASES = (
     Base("tank", ("diagnose", *RIG), 3.0),
     Base("bench", ("diagnose", *RIG), 1.0),
@@ -44,13 +46,18 @@ BASES = (
     Base("logged", ("diagnose", *RIG), 0.7, ("*.toml", "*.asc", "*.dbc")),
     Base("own", ("diagnose", *RIG), 1.0, ("own.toml",)),
     Base("tank", ("limits", *RIG), 0.7),
+    Base("bench", ("new", "bench", *PAIR, *DRAFT), 1.5, PAIR, 0.3),
+    Base("drafts", ("new", "tank", *PAIR, *DRAFT), 0.7, PAIR, 0.3),
+    Base("bench", ("new", "bench", *PAIR, "--column", "extension=extension [m]", "--unit", "extension=mm",
+                   "--scale", "extension=1e3", "--parameter", "stroke=300 mm",
+                   "--validate", "1", *DRAFT), 1.0, PAIR, 0.9),
     Base("flow", ("identify", "flow", *RIG), 2.0),
     Base("friction", ("identify", "friction", *RIG), 2.0),
     Base("spool", ("identify", "spool", *RIG), 2.0),
     Base("bench", ("identify", "spool", *RIG), 0.7),
     Base("bench", ("identify", "actuator", *RIG), 1.5),
     Base("bench", ("noise", "record.csv", "--signal", "extension", *OUT), 2.0, ("record.csv",)),
-    Base("bench", ("compare", "record.csv", "other.csv", *OUT), 2.0, ("record.csv", "other.csv")),
+    Base("bench", ("compare", *PAIR, *OUT), 2.0, PAIR),
     Base("scenario", ("simulate", "platform.toml", *OUT), 2.0, ("platform.toml",)),
     Base("scenario", ("simulate", "bench.toml", *OUT), 1.0, ("bench.toml",)),
     Base("scenario", ("simulate", "tank.toml", *OUT), 1.0, ("tank.toml",)),
@@ -138,9 +145,10 @@ def write_inputs(root: Path) -> None:
         _twin(kind, root / kind)
     _cylinder(root / "cylinder")
     _test_benches(root)
-    first, second = sorted((root / "bench").glob("*.csv"))[:2]
-    shutil.copy(first, root / "bench" / "record.csv")
-    shutil.copy(second, root / "bench" / "other.csv")
+    (root / "drafts").mkdir()
+    for kind, folder in (("bench", "bench"), ("tank", "drafts")):
+        for file, name in zip(sorted((root / kind).glob("*.csv"))[:2], PAIR, strict=True):
+            shutil.copy(file, root / folder / name)
     shutil.copytree(root / "bench", root / "own")
     with (root / "own" / "rig.toml").open("a") as rig:
         rig.write('\n[effects]\nfile = "own.toml"\n')
