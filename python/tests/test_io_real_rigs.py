@@ -113,7 +113,9 @@ def test_a_shipped_scenario_is_asked_for_by_its_name(
     own = tmp_path / "waves_3012"
     own.write_text("")
     assert scenario_file(own) == own and scenario_file(Path("waves_3012")) == Path("waves_3012")
-    assert scenario_file(Path("waves_3013.toml")) == Path("waves_3013.toml"), "a file's name is the user's own"
+    assert scenario_file(Path("waves_3013.toml")) == Path("waves_3013.toml"), (
+        "a file's name is the user's own"
+    )
     with pytest.raises(InputError, match="did you mean 'waves_3061'"):
         scenario_file(Path("waves_3013"))
 

@@ -10,6 +10,12 @@ from sms.arrays import Array
 from sms.estimation.kind import Kind
 from sms.estimation.run import Run
 from sms.io.rig import Rig
+from sms.io.signals import SIGNALS
+
+FINEST = 2.0**-16
+"""Of what runs usually sweep, or such a sensor reads: the step of the finest converters on such rigs. Where no noise is
+declared, none smaller than what rounding to it makes is believed, as that of a simulation, or of a signal at rest.
+"""
 
 
 def noise_of(rig: Rig, kind: Kind, runs: Sequence[Run]) -> dict[str, float]:
@@ -24,14 +30,28 @@ def noise_of(rig: Rig, kind: Kind, runs: Sequence[Run]) -> dict[str, float]:
         source = rig.signals.get(signal)
         declared = None if source is None else source.noise
         steps = [sample_noise(r.signals[signal]) for r in runs if signal in r.signals]
-        measured = float(np.median(steps)) if steps else 1.0
+        measured = max(float(np.median(steps)) if steps else 1.0, _finest(signal))
         if signal in kind.computed:
             measured = kind.computed[signal]
         resolution = 0.0 if source is None else source.resolution
-        noise[signal] = max(declared or measured, resolution / np.sqrt(12.0), 1e-12)
+        noise[signal] = max(declared or measured, resolution / np.sqrt(12.0))
     return noise
 
 
 def sample_noise(values: Array) -> float:
-    """From third differences, which a smooth motion hardly has."""
-    return float(np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0))
+    """From third differences, which a smooth motion hardly has; of rounded readings at least what rounding makes."""
+    by_differences = float(np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0))
+    return max(by_differences, rounding_step(values) / float(np.sqrt(12.0)))
+
+
+def rounding_step(values: Array) -> float:
+    """The smallest step between readings of which most are there more than once; 0 where they are not, or all alike."""
+    levels = np.unique(values)
+    steps = np.diff(levels)
+    steps = steps[steps > 1e-12 * np.max(np.abs(levels))]  # less is the last digit of one level
+    return float(steps.min()) if steps.size and 2 * levels.size <= values.size else 0.0
+
+
+def _finest(signal: str) -> float:
+    info = SIGNALS[signal]
+    return FINEST * (info.sweep or info.high - info.low) / float(np.sqrt(12.0))

@@ -192,6 +192,8 @@ class Runs:
             same = self.block[self.channel == c]
             together = same[lag:] == same[:-lag]
             out[c] = 0.5 * np.mean((of_channel[lag:] - of_channel[:-lag])[together] ** 2)
+            if out[c] == 0.0:  # a reading that never changes has the noise that is declared of it
+                out[c] = 1.0
             if self.channels[c] in self.kind.computed:
                 out[c] = max(out[c], 1.0)
         return out
