@@ -44,6 +44,21 @@ __all__ = [
 ]
 
 
+PATTERN = (
+    "catalogue",
+    "healthy",
+    "catalogue",
+    "outside",
+    "catalogue",
+    "healthy",
+    "catalogue",
+    "outside",
+    "catalogue",
+    "pair",
+)
+SORTS = tuple(dict.fromkeys(PATTERN))
+
+
 @dataclass(frozen=True)
 class Task:
     """What to hide, and with which seed."""
@@ -199,20 +214,13 @@ def tasks(
     multiple: float,
     levels: Sequence[float] = (0.0,),
     follow: bool = False,
+    only: str | None = None,
 ) -> list[Task]:
-    """Half of the catalogue, a fifth each healthy and from outside it, a tenth pairs; the same at each level."""
-    pattern = (
-        "catalogue",
-        "healthy",
-        "catalogue",
-        "outside",
-        "catalogue",
-        "healthy",
-        "catalogue",
-        "outside",
-        "catalogue",
-        "pair",
-    )
+    """Half of the catalogue, a fifth each healthy and from outside it, a tenth pairs; the same at each level.
+
+    only: all of this sort.
+    """
+    pattern = PATTERN if only is None else (only,)
     return [
         Task(kind, first + i, pattern[i % len(pattern)], multiple, level, follow)
         for i in range(count)

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from validation.trials.__main__ import app
 from validation.trials.machine_commands import as_dict
+from validation.trials.machines import SORTS, tasks
 from validation.trials.scoring import Outcome
 
 LEAK = Outcome("tank", 1, "catalogue", 3.0, ["leak"], [1.0], "cause", [["leak"]])
@@ -31,3 +32,11 @@ def test_programs_get_goals_and_outcomes() -> None:
     answer = json.loads(json.dumps(as_dict([LEAK])))
     assert answer["goals"][0]["count"] == answer["goals"][0]["of"] == 1
     assert Outcome(**answer["outcomes"][0]) == LEAK
+
+
+def test_trials_of_one_sort() -> None:
+    assert {t.sort for t in tasks("tank", 7, 10, 3.0)} == set(SORTS)
+    healthy = tasks("tank", 7, 10, 3.0, (0.0, 2.0), only="healthy")
+    assert [(t.seed, t.sort) for t in healthy[::2]] == [(7 + k, "healthy") for k in range(10)]
+    with pytest.raises(InputError, match="did you mean 'healthy'"):
+        CliRunner().invoke(app, ["tank", "--only", "healty"], catch_exceptions=False)
