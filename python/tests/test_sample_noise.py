@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +10,12 @@ import pytest
 from sms.diagnosis.design.detection_limits import published_rig
 from sms.diagnosis.pipeline import diagnose, read_and_check
 from sms.diagnosis.preparation import make_data
-from sms.estimation.noise import rounding_step, sample_noise
+from sms.estimation.noise import noise_of, rounding_step, sample_noise
+from sms.estimation.run import Run
 from sms.io.rig import load_rig
 from sms.io.write import write_record
 from sms.rigs.bench import BENCH, OUTPUTS
+from sms.rigs.kinds import kind_of
 
 LEAK = 2e-9  # kg/(s Pa)
 
@@ -65,6 +68,16 @@ def test_noise_of_clean_records_is_what_a_fine_converter_would_leave(tmp_path: P
     assert 1e-8 < runs.noise["extension"] < 1e-5  # m
     rows = np.zeros(len(runs.channel))
     assert runs.floor(rows).tolist() == [1.0] * len(OUTPUTS)
+
+
+@pytest.mark.parametrize("kind", ["bench", "platform", "tank"])
+def test_every_output_of_a_rig_has_a_noise_although_none_is_declared_and_it_rests(kind: str) -> None:
+    """A leg's signals are named with its number."""
+    rig = published_rig(kind)
+    rig = replace(rig, signals={n: replace(s, noise=None) for n, s in rig.signals.items()})
+    outputs = kind_of(rig).outputs
+    at_rest = Run("at rest", "identify", np.arange(99) / 200, dict.fromkeys(outputs, np.ones(99)), frozenset(), {})
+    assert all(0.0 < noise < 1e4 for noise in noise_of(rig, kind_of(rig), [at_rest]).values())
 
 
 @pytest.mark.full

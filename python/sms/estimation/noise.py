@@ -10,7 +10,7 @@ from sms.arrays import Array
 from sms.estimation.kind import Kind
 from sms.estimation.run import Run
 from sms.io.rig import Rig
-from sms.io.signals import SIGNALS
+from sms.io.signals import SIGNALS, without_leg
 
 FINEST = 2.0**-16
 """Of what runs usually sweep, or such a sensor reads: the step of the finest converters on such rigs. Where no noise is
@@ -53,5 +53,5 @@ def rounding_step(values: Array) -> float:
 
 
 def _finest(signal: str) -> float:
-    info = SIGNALS[signal]
+    info = SIGNALS[without_leg(signal)]
     return FINEST * (info.sweep or info.high - info.low) / float(np.sqrt(12.0))
