@@ -208,6 +208,12 @@ def main() -> None:
         print(f"{case}: {answer.verdict}. {answer.sentence}")
         for g in answer.gain if answer.causes else ():
             print(f"    {g.record} ({g.role}), {g.signal}: {-100.0 * g.reduction:+.0f} % error")
+        for r in answer.free_run if answer.causes else ():
+            if r.role == "test":
+                sizes = f"{1e3 * r.baseline_rms:.2f} mm, now {1e3 * r.extended_rms:.2f} mm"
+                print(f"    {r.record}, whole, {r.signal}: {sizes}")
+        for p in answer.refitted:
+            print(f"    beside it {p.name}: {p.old_value:.3g} -> {p.value:.4g} {p.unit}")
         for g in answer.empirical.gain if answer.empirical else ():
             print(
                 f"    {g.record} ({g.role}), {g.signal}: {-100.0 * g.reduction:+.0f} % with the curve"

@@ -32,8 +32,6 @@ def free_runs(baseline: Fitted, extended: Fitted, data: Data) -> tuple[FreeRun, 
 def _of_role(part: Runs, baseline: Fitted, extended: Fitted) -> list[FreeRun]:
     motions = tuple(replace(run, window=WHOLE) for run in part.motions)
     whole = replace(part, motions=motions, complete=True)
-    if len(whole.problem.windows) != len(motions):  # a plant of one's own is cut in its own way
-        return []
     errors = [whole.problem.errors(fitted.params) for fitted in (baseline, extended)]
     found = []
     for number, run in enumerate(motions):
@@ -68,6 +66,8 @@ def _note(whole: Runs, record: int, errors: Array) -> str:
     time = run.time[whole.sample[rows]] - run.time[0]
     if (gone := _diverges(errors[rows])).any():
         return f"diverges at {time[int(np.argmax(gone))]:.2f} s"
+    if whole.rig.kind == "own":  # what a plant of one's own calls an extension has no stroke
+        return ""
     stroke = whole.rig.declared("stroke").value
     leaves = np.inf
     for c, channel in enumerate(whole.channels):

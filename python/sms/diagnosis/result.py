@@ -182,6 +182,16 @@ class Finding:
 
 
 @dataclass(frozen=True)
+class Undetermined:
+    """Free parameters of the baseline that these records do not tell apart: they may move together without a trace."""
+
+    parameters: tuple[str, ...]
+    known: str
+    """What is known of them: "resistance x compliance"; empty where that is nothing or has no short name."""
+    sentence: str
+
+
+@dataclass(frozen=True)
 class NextExperiment:
     title: str
     purpose: str
@@ -260,6 +270,10 @@ class Diagnosis(Shown):
     noise_floor: dict[str, float] = field(default_factory=dict)
     """"sample" and "stroke": rms of what differs from sample to sample and from stroke to stroke, N."""
     baseline: tuple[ParameterValue, ...] = ()
+    refitted: tuple[ParameterValue, ...] = ()
+    """Beside the causes: what is declared uncertain or unknown, as fitted together with them; empty without a cause."""
+    undetermined: tuple[Undetermined, ...] = ()
+    """For a plant of one's own: what is free and cannot be known from these records; not among `baseline`."""
     next_experiment: NextExperiment | None = None
     related: tuple[Related, ...] = ()
     series: tuple[Series, ...] = field(default=(), repr=False)

@@ -178,6 +178,7 @@ def complete(
         empirical=curve,
         noise_floor={},
         baseline=tuple(value_of(baseline, n, start[n]) for n in baseline.hypothesis.free),
+        refitted=_beside(final, causes),
         next_experiment=next_experiment(case.verdict, classes, final, data, hidden, unseen),
         series=series_of(baseline, case.final, data),
     )
@@ -263,6 +264,13 @@ def _cause(members: list[Trial], case: Case) -> Cause:
 
     each = record_by_record(final, members[0].effect, data)
     return cause_from(members, found, {record: value for record, (value, _) in each.items()})
+
+
+def _beside(final: Fitted, causes: Sequence[Cause]) -> tuple[ParameterValue, ...]:
+    """What was fitted together with the causes: declared, and as it is now."""
+    named = {p.name for cause in causes for p in cause.parameters}
+    h = final.hypothesis
+    return tuple(value_of(final, n, h.start[n]) for n in h.free if n not in named and causes)
 
 
 # ---- where it comes from ------------------------------------------------------------

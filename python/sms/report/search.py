@@ -149,6 +149,15 @@ def provenance(diagnosis: Diagnosis) -> str:
         ],
         on_paper=_PRINTED,
     )
+    beside = table(
+        "Parameters fitted beside the causes",
+        ("Parameter", "Declared \N{RIGHTWARDS ARROW} fitted"),
+        [
+            (f"<code>{esc(p.name)}</code>", f'<span class="nowrap">{esc(_before_after(p))}</span>')
+            for p in diagnosis.refitted
+        ],
+        on_paper=_PRINTED,
+    )
     versions = table(
         "Made with",
         ("What", "Version"),
@@ -159,6 +168,7 @@ def provenance(diagnosis: Diagnosis) -> str:
     parts = [
         records if diagnosis.records else empty("No records."),
         fitted if diagnosis.baseline else "",
+        beside if diagnosis.refitted else "",
         versions,
     ]
     columns = "".join(f"<div>{part}</div>" for part in parts if part)

@@ -3,17 +3,23 @@
 model       states, inputs, outputs, parameters, the derivative, and the effects that may be missing
 compiled    the derivative in C++ or C, from a shared library
 records     measured runs, from arrays or tables
-integrate, shooting   the model held against the records, window by window
-engine      the same search and judgement as for the rigs of this project
+integrate, delayed, shooting   the model held against the records, window by window
+whole_record   a model run over a whole record
+as_rig, engine   the same search and judgement as for the rigs of this project
+determinacy    what the records cannot tell of the free parameters
+answer, curve_term   the extended model, with causes or with a measured curve
 """
 
+from sms.diagnosis.own.answer import Answer, read_parameters
 from sms.diagnosis.own.compiled import from_library
 from sms.diagnosis.own.engine import diagnose_model, write_diagnosis
 from sms.diagnosis.own.model import Effect, Input, Model, Output, Parameter, State, Values
 from sms.diagnosis.own.records import Record, read_record
+from sms.diagnosis.own.whole_record import Simulation, simulate
 from sms.io.rig import Role
 
 __all__ = [
+    "Answer",
     "Effect",
     "Input",
     "Model",
@@ -21,10 +27,13 @@ __all__ = [
     "Parameter",
     "Record",
     "Role",
+    "Simulation",
     "State",
     "Values",
     "diagnose_model",
     "from_library",
+    "read_parameters",
     "read_record",
+    "simulate",
     "write_diagnosis",
 ]

@@ -12,7 +12,9 @@ and everything must be computed by numpy functions that work element by element 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from inspect import Parameter as Argument
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -49,8 +51,9 @@ class Values:
 
 Equation = Callable[[Values, Array, Array], Sequence[Array] | Array]
 """Of (parameters, state (states, n), input (inputs, n)) to one array (n,) for each state, or for each output."""
-Guess = Callable[[Mapping[str, Array]], Mapping[str, Array]]
-"""Of one record's signals to rough values of the states, (samples,) each."""
+Guess = Callable[..., Mapping[str, Array]]
+"""To rough values of the states, (samples,) each, of (parameters, time, outputs, inputs): time (samples,) in s from the
+record's beginning, the others by name. Or of one record's signals alone."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,9 @@ class Input:
     name: str
     unit: str
     held: bool = False
+    delay: str = ""
+    """Parameter by which it acts later than it is recorded: a dead time, s, never below zero. As much of a record as
+    its upper bound is compared with nothing, since what acted then was not recorded."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +91,8 @@ class Output:
     unit: str
     noise: float | None = None
     """Standard deviation of one sample; from how neighbouring samples differ if it is not known."""
+    range: tuple[float, float] | None = None
+    """What the sensor can read: samples at either end or beyond are compared with nothing."""
 
 
 @dataclass(frozen=True)
@@ -138,9 +146,13 @@ class Model:
     """s: of the integration (Runge-Kutta, fourth order); a sample's length if that is shorter. None: a sample's length,
     halved until that moves no estimate by more than its standard error."""
     guess: Guess | None = None
+    jump: Equation | None = None
+    """What happens at once: of (parameters, state, input) to the state thereafter, asked after every step of the
+    integration (np.where: a level at the rim stays there, an integrator is reset)."""
 
     def __post_init__(self) -> None:
         self._check_names()
+        self._check_signals()
         for p in self.parameters:
             if not p.lower <= p.value <= p.upper or not p.lower < p.upper:
                 raise InputError(
@@ -178,19 +190,44 @@ class Model:
             if twice:
                 raise InputError(f"{self.title}, {what}: '{twice[0]}' is there twice; rename one")
 
+    def _check_signals(self) -> None:
+        known = [p.name for p in self.parameters]
+        for signal in self.inputs:
+            if not signal.delay:
+                continue
+            where = f"{self.title}, input {signal.name}, delay"
+            if signal.delay not in known:
+                raise InputError(
+                    f"{where}: there is no parameter '{signal.delay}'; {did_you_mean(signal.delay, known)}"
+                )
+            if self.parameter(signal.delay).lower < 0.0:
+                raise InputError(
+                    f"{where}: {signal.delay} may be negative; no input acts before it is there, so set its lower "
+                    "bound to 0"
+                )
+        for output in self.outputs:
+            if output.range is not None and not output.range[0] < output.range[1]:
+                raise InputError(
+                    f"{self.title}, output {output.name}: range is from {output.range[0]:g} to {output.range[1]:g}; "
+                    "write the lowest reading first"
+                )
+
     def _check_equations(self) -> None:
-        """Both functions are called once, for two things at a time."""
+        """The functions are called once, for two things at a time."""
         state = np.array([[s.start, s.start + s.scale] for s in self.states])
         inputs = np.zeros((len(self.inputs), 2))
-        for what, function, wanted in (
+        functions = [
             ("derivative", self.derivative, len(self.states)),
             ("output", self.output, len(self.outputs)),
-        ):
+        ]
+        if self.jump is not None:
+            functions.append(("jump", self.jump, len(self.states)))
+        for what, function, wanted in functions:
             found = function(self.values(), state, inputs)
             if len(found) != wanted:
                 raise InputError(
                     f"{self.title}: {what} returns {len(found)} arrays; needed are {wanted}, in the order of "
-                    f"{'states' if what == 'derivative' else 'outputs'}"
+                    f"{'outputs' if what == 'output' else 'states'}"
                 )
             for part in found:
                 if np.shape(part) not in ((2,), ()):
@@ -206,6 +243,34 @@ class Model:
     def parameter(self, name: str) -> Parameter:
         return next(p for p in self.parameters if p.name == name)
 
+    def with_values(self, values: Mapping[str, float]) -> Model:
+        """The model with other declared values: all else stays. InputError for a name that it does not have."""
+        known = [p.name for p in self.parameters]
+        for name in values:
+            if name not in known:
+                raise InputError(
+                    f"{self.title}: there is no parameter '{name}'; {did_you_mean(name, known)}"
+                )
+        changed = [
+            replace(p, value=float(values[p.name])) if p.name in values else p
+            for p in self.parameters
+        ]
+        return replace(self, parameters=changed)
+
+    def guessed(self, time: Array, signals: Mapping[str, Array]) -> dict[str, Array]:
+        """Rough values (samples,) of states by its own `guess`; time (samples,) in s."""
+        if self.guess is None:
+            return {}
+        if _takes_four(self.guess):
+            outputs, inputs = (
+                {s.name: signals[s.name] for s in part if s.name in signals}
+                for part in (self.outputs, self.inputs)
+            )
+            found = self.guess(self.values(), time - time[0], outputs, inputs)
+        else:
+            found = self.guess(signals)
+        return {n: np.asarray(v, dtype=np.float64) for n, v in found.items()}
+
     @property
     def signals(self) -> list[Input | Output]:
         """What is recorded, time aside."""
@@ -215,3 +280,12 @@ class Model:
     def equations(self) -> dict[str, int]:
         """Equation in which a term may be missing -> number of its state."""
         return {s.equation: i for i, s in enumerate(self.states) if s.equation}
+
+
+def _takes_four(function: Guess) -> bool:
+    """Whether a guess is asked with parameters, time, outputs and inputs; else with the signals alone."""
+    places = (Argument.POSITIONAL_ONLY, Argument.POSITIONAL_OR_KEYWORD)
+    asked = signature(function).parameters.values()
+    return sum(a.kind in places for a in asked) >= 4 or any(
+        a.kind is Argument.VAR_POSITIONAL for a in asked
+    )

@@ -12,9 +12,11 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sms.arrays import Array
-from sms.diagnosis.own.integrate import Batch, simulate
+from sms.diagnosis.own.delayed import Delayed
+from sms.diagnosis.own.integrate import Batch, Push, simulate, trajectory
 from sms.diagnosis.own.model import Model, Values
 from sms.diagnosis.thresholds import DIFFERENCE, INTEGRATION_ERROR, MOST_HALVINGS
 
@@ -35,6 +37,10 @@ class Stretch:
     guess: Array
     conditions: Mapping[str, float]
     """Parameter -> by how much it is larger in this record."""
+    window: float | None = None
+    """s: of the windows it is cut into; None: as those of all."""
+    clipped: NDArray[np.bool_] | None = None
+    """(samples, outputs): readings at the end of their range, compared with nothing."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +75,7 @@ class ShootingProblem:
         self, model: Model, stretches: Sequence[Stretch], noise: Array, window: float
     ) -> None:
         self.model = model
-        self.windows = list(_cut(stretches, window, len(model.outputs)))
+        self.windows = list(_cut(stretches, window, model))
         self.rows = sum(w.rows for w in self.windows)
         longest = max(w.samples for w in self.windows)
         place = [
@@ -80,8 +86,20 @@ class ShootingProblem:
         self._inputs = np.stack([s.inputs[p] for s, p in zip(of, place, strict=True)], axis=-1)
         self._measured = np.stack([s.measured[p] for s, p in zip(of, place, strict=True)], axis=-1)
         self._noise = noise[:, None]
-        self._used = np.arange(longest)[:, None] < np.array([w.samples for w in self.windows])
         self._samples = np.array([w.samples for w in self.windows])
+        inside = np.arange(longest)[:, None] < self._samples
+        self._used = np.repeat(inside[:, None], len(model.outputs), axis=1)
+        for k, (s, p) in enumerate(zip(of, place, strict=True)):
+            if s.clipped is not None:
+                self._used[..., k] &= ~s.clipped[p]
+        record, first = (
+            np.array([getattr(w, a) for w in self.windows]) for a in ("record", "first")
+        )
+        self._delayed = [
+            Delayed.of(j, i.delay, i.held, [s.inputs[:, j] for s in stretches], record, first)
+            for j, i in enumerate(model.inputs)
+            if i.delay
+        ]
         self._shift = {
             name: np.array([s.conditions.get(name, 0.0) for s in of])
             for name in {n for s in stretches for n in s.conditions}
@@ -109,6 +127,13 @@ class ShootingProblem:
     def errors(self, params: Values) -> Array:
         """(rows,) predicted less measured over the noise, from the best initial states."""
         return self._flat(self._shoot(params).residual)
+
+    def states(self, params: Values, start: Array | None = None) -> tuple[Array, Array]:
+        """Readings (samples, outputs, windows) and states (samples, states, windows) from these initial states (states,
+        windows); None: from the best."""
+        start = self._shoot(params).start if start is None else start
+        values = self._shifted(params, 1)
+        return trajectory(self.model, values, self._batch(start, 1))
 
     def hidden(self, params: Values, knots: int) -> Array:
         """(rows, equations * knots): derivatives against inputs hidden in the model's equations.
@@ -184,17 +209,27 @@ class ShootingProblem:
             added = amplitude * np.maximum(0.0, 1.0 - away)
             return np.asarray(added.reshape(len(amplitude), -1))
 
+        values = self._shifted(params, copies)
+        return self._compare(values, np.tile(start, copies), copies, push)
+
+    def _shifted(self, params: Values, copies: int) -> Values:
+        """The parameters with what is otherwise in some records, for so many copies of all windows."""
         values = params.copy()
         for name, shift in self._shift.items():
             values[name] = np.tile(params[name] + shift, copies)
-        return self._compare(values, np.tile(start, copies), copies, push)
+        return values
 
-    def _compare(self, values: Values, start: Array, copies: int, push: object = None) -> Array:
-        batch = Batch(np.tile(self._step, copies), np.tile(self._inputs, copies), start)
-        found = simulate(self.model, values, batch, push)  # type: ignore[arg-type]
+    def _batch(self, start: Array, copies: int) -> Batch:
+        delayed = [d.copies(copies) for d in self._delayed]
+        return Batch(np.tile(self._step, copies), np.tile(self._inputs, copies), start, delayed)
+
+    def _compare(
+        self, values: Values, start: Array, copies: int, push: Push | None = None
+    ) -> Array:
+        found = simulate(self.model, values, self._batch(start, copies), push)
         found = found.reshape(*found.shape[:2], copies, len(self.windows))
         error = (found - self._measured[:, :, None, :]) / self._noise[:, :, None]
-        return np.where(self._used[:, None, None, :], error, 0.0)
+        return np.where(self._used[:, :, None, :], error, 0.0)
 
     def _difference(self, params: Values, name: str) -> tuple[float, float]:
         """The two values between which a parameter's derivative is taken, within its bounds."""
@@ -215,9 +250,7 @@ class ShootingProblem:
                 other = start.copy()
                 other[k] += sign * step[k]
                 moved.append(other)
-        values = params.copy()
-        for name, shift in self._shift.items():
-            values[name] = np.tile(params[name] + shift, len(moved))
+        values = self._shifted(params, len(moved))
         found = self._compare(values, np.hstack(moved), len(moved))
         slope = (found[:, :, 2::2] - found[:, :, 1::2]) / (2.0 * DIFFERENCE)
         samples, outputs, _, windows = slope.shape
@@ -282,16 +315,23 @@ def _orthonormal(columns: Array) -> Array:
     return np.asarray(u * (s > 1e-9 * np.maximum(s[:, :1], 1e-300))[:, None, :])
 
 
-def _cut(stretches: Sequence[Stretch], length: float, outputs: int) -> Iterator[Window]:
-    """Windows of about `length`, a record cut evenly."""
-    row = 0
+def _cut(stretches: Sequence[Stretch], length: float, model: Model) -> Iterator[Window]:
+    """Windows of about `length`, a record cut evenly after its longest dead time: what acted before is unknown."""
+    row, outputs = 0, len(model.outputs)
     for record, s in enumerate(stretches):
-        samples = len(s.measured)
-        parts = max(1, int(samples * s.step / length + 0.5))
+        lead = samples_before(model, s.step)
+        samples = len(s.measured) - lead
+        parts = max(1, int(samples * s.step / (s.window or length) + 0.5))
         for part in range(parts):
-            first, end = samples * part // parts, samples * (part + 1) // parts
+            first, end = (lead + samples * p // parts for p in (part, part + 1))
             yield Window(record, first, end - first, row, (end - first) * outputs)
             row += (end - first) * outputs
+
+
+def samples_before(model: Model, step: float) -> int:
+    """Samples of a record from which its inputs alone are used: the longest dead time that a parameter may have."""
+    longest = max((model.parameter(i.delay).upper for i in model.inputs if i.delay), default=0.0)
+    return int(np.ceil(longest / step - 1e-9))
 
 
 def _parts(things: list[Thing], size: int) -> Iterator[tuple[int, list[Thing]]]:
