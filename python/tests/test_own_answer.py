@@ -13,7 +13,9 @@ from sms import _core
 from sms.diagnosis import own
 from sms.diagnosis.own.curve_term import with_curve
 from sms.diagnosis.own.integrate import Batch, trajectory
-from sms.diagnosis.remainder import Shape
+from sms.diagnosis.own.wording import where_it_acts
+from sms.diagnosis.remainder import Hidden, Shape
+from sms.diagnosis.wording_simulated import sentence
 from sms.errors import InputError
 from test_own_model import LAG, Array, records_of_lag
 
@@ -278,3 +280,31 @@ def test_a_fit_that_ends_at_a_bound_and_one_without_a_trace_are_said() -> None:
     )
     assert [u.parameters for u in answer.undetermined] == [("idle",)]
     assert "leaves no trace" in answer.undetermined[0].sentence
+
+
+def test_a_curve_of_another_equation_is_said_as_such() -> None:
+    """It was "balance of the lower tank ... (reading of level)" in one breath."""
+    curve = Shape("reading of level", "u [V]", (0.0, 1.0), (0.0, 1.0), (0.1, 0.1), "m", 0.6)
+    shares = {"balance of the lower tank": (0.7, 0.6, 0.8), "reading of level": (0.6, 0.5, 0.7)}
+    hidden = Hidden(shares, {}, curve)
+    said = sentence("unknown", (), hidden)
+    assert "It arises in the balance of the lower tank; of all functions of one signal" in said
+    assert "one in the reading of level over u explains most, 60 %" in said
+    assert "(reading of level)" not in said
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ((0.0, 0.01, 0.0, 0.5, 1.0), "above 2 V"),
+        ((-1.0, -0.5, 0.01, 0.0, 0.0), "below 2 V"),
+        ((1.0, 1.0, 1.0, 1.0, 1.0), ""),
+        ((0.0, 1.0, 0.0, 1.0, 0.0), ""),
+    ],
+)
+def test_where_a_missing_term_acts(value: tuple[float, ...], said: str) -> None:
+    at = (0.0, 1.0, 2.0, 3.0, 4.0)
+    found = where_it_acts(Shape("flow", "upper_level [V]", at, value, 5 * (0.1,), "V/s", 0.9))
+    assert bool(found) == bool(said)
+    if said:
+        assert f"acts where upper level is {said}" in found[0].replace("2.00 V", "2 V")

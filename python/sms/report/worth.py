@@ -286,9 +286,12 @@ def next_experiment(diagnosis: Diagnosis) -> str:
     separates = f"<p>It would distinguish: {', '.join(parts)}.</p>" if parts else ""
     carry = ""
     if diagnosis.verdict == "unknown" and diagnosis.hidden is not None and not diagnosis.empirical:
+        asked = "diagnose_model(..., empirical=True)"
+        if diagnosis.inputs:  # else a model in Python, and no rig file
+            asked = f"sms diagnose {diagnosis.rig} --empirical"
         carry = (
-            f"<p>Until it is found, <code>sms diagnose {esc(diagnosis.rig)} --empirical</code> includes the curve of "
-            "the missing term in the simulation and measures the improvement.</p>"
+            f"<p>Until it is found, <code>{esc(asked)}</code> includes the curve of the missing term in the simulation "
+            "and measures the improvement.</p>"
         )
     body = (
         f"<h3>{esc(capital(plan.title))}</h3><p>{esc(capital(plan.purpose))}</p>{separates}{carry}"
@@ -305,10 +308,10 @@ def _without_measuring(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "data-fault":
         return "Correct what the data check found, then diagnose again."
-    return (
-        "No measurement is proposed. An effect too small for these records may still be present: "
-        f"sms limits {diagnosis.rig} gives the detection limits, and the experiment that lowers each."
-    )
+    small = "No measurement is proposed. An effect too small for these records may still be present"
+    if not diagnosis.inputs:  # a model in Python
+        return f"{small}; diagnosis.json says from which size each would show (still_hidden)."
+    return f"{small}: sms limits {diagnosis.rig} gives the detection limits, and the experiment that lowers each."
 
 
 def _identifier_label(identifier: str) -> str:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sms.arrays import Array
 from sms.diagnosis.own.delayed import Delayed
 from sms.diagnosis.own.integrate import Batch, Push, simulate, trajectory
-from sms.diagnosis.own.model import Model, Values
+from sms.diagnosis.own.model import Model, Numbers, Values
 from sms.diagnosis.thresholds import DIFFERENCE, INTEGRATION_ERROR, MOST_HALVINGS
 
 Thing = TypeVar("Thing")
@@ -106,6 +106,7 @@ class ShootingProblem:
         }
         self._scale = np.array([s.scale for s in model.states])
         self._start = np.stack([s.guess[w.first] for s, w in zip(of, self.windows, strict=True)], 1)
+        self._last: tuple[dict[str, Numbers], Array, Shot] | None = None
 
     # ---- what the search asks for ----------------------------------------------------------------
 
@@ -169,7 +170,7 @@ class ShootingProblem:
             if np.sum(change**2) < INTEGRATION_ERROR**2:
                 break
             step, before = 0.5 * step, now
-        self.model = replace(self.model, longest_step=step)
+        self.model, self._last = replace(self.model, longest_step=step), None
         return self.model
 
     # ---- simulations, side by side ---------------------------------------------------------------
@@ -258,6 +259,15 @@ class ShootingProblem:
         return found[:, :, 0], by_start
 
     def _shoot(self, params: Values) -> Shot:
+        """The windows at their best initial states; a fit asks for residuals and then for slopes at the same values."""
+        values = dict(params.__dict__)
+        if self._last is not None and self._last[1] is self._start and self._last[0] == values:
+            return self._last[2]
+        shot = self._shot(params)
+        self._last = (values, self._start, shot)
+        return shot
+
+    def _shot(self, params: Values) -> Shot:
         """Levenberg-Marquardt over the initial state of every window, until a step gains next to nothing."""
         start = self._start.copy()
         residual, by_start = self._by_start(params, start)
