@@ -11,10 +11,13 @@ from __future__ import annotations
 
 import argparse
 import cProfile
+import importlib
 import pstats
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 from sms.arrays import Array
@@ -28,16 +31,33 @@ GOAL = 30.0
 CASES = {"healthy": {}, "leak": {"leak_2": 1.5e-6}, "spill": {"spill": 4e-3}}
 
 
-def derivative(p: own.Values, x: Array, u: Array) -> Sequence[Array]:
-    """Rates of the levels, m/s."""
-    first, second, third = (np.sqrt(19.62 * np.maximum(level, 1e-6)) for level in x)
-    pumped = p.pump_gain * np.maximum(u[0] - p.dead_band, 0.0)
-    spilled = p.spill * np.maximum(x[0] - 0.08, 0.0)
+def derivative(
+    p: Any, x: Any, u: Any, sqrt: Any = np.sqrt, most: Any = np.maximum
+) -> Sequence[Any]:
+    """Rates of the levels, m/s; sqrt, most: of numpy, or of CasADi."""
+    first, second, third = (sqrt(19.62 * most(x[k], 1e-6)) for k in range(3))
+    pumped = p.pump_gain * most(u[0] - p.dead_band, 0.0)
+    spilled = p.spill * most(x[0] - 0.08, 0.0)
     return (
         (pumped - (p.outlet_1 + p.leak_1) * first - spilled) / 15.5e-4,
         (p.outlet_1 * first - (p.outlet_2 + p.leak_2) * second) / 15.5e-4,
         (p.outlet_2 * second - (p.outlet_3 + p.leak_3) * third) / 15.5e-4,
     )
+
+
+def with_casadi(plant: own.Model) -> own.Model:
+    """The same plant with exact derivatives."""
+    casadi: Any = importlib.import_module("casadi")
+    parts = ("states", "inputs", "outputs", "parameters", "effects", "title")
+    given: dict[str, Any] = {name: getattr(plant, name) for name in parts}
+    return own.Model.from_casadi(
+        derivative=partial(derivative, sqrt=casadi.sqrt, most=casadi.fmax), output=output, **given
+    )
+
+
+def output(p: Any, x: Any, u: Any) -> Sequence[Any]:
+    """The gauges, m."""
+    return [x[0] + p.zero_1, x[1] + p.zero_2, x[2]]
 
 
 def model() -> own.Model:
@@ -57,7 +77,7 @@ def model() -> own.Model:
         outputs=[own.Output(f"level_{k}", "m", noise=NOISE) for k in (1, 2, 3)],
         parameters=[*known, *missing, own.Parameter("spill", "m^2/s", 0.0, 0.0, 1.0)],
         derivative=derivative,
-        output=lambda p, x, u: [x[0] + p.zero_1, x[1] + p.zero_2, x[2]],
+        output=output,
         effects=[
             own.Effect(p.name, p.name, f"another {p.name}", "It is another than declared.")
             for p in (*known, *missing)
@@ -86,10 +106,12 @@ def main() -> None:
     parser.add_argument("--samples", type=int, default=5000, help="of all records together")
     parser.add_argument("--case", choices=CASES, action="append")
     parser.add_argument("--profile", action="store_true", help="print where the time goes")
+    parser.add_argument("--casadi", action="store_true", help="the plant with exact derivatives")
     options = parser.parse_args()
-    plant, worst = model(), 0.0
+    plain, worst = model(), 0.0
+    plant = with_casadi(plain) if options.casadi else plain
     for case in options.case or CASES:
-        given = records(plant, case, options.samples)
+        given = records(plain, case, options.samples)
         profile = cProfile.Profile() if options.profile else None
         wall, cpu = time.perf_counter(), time.process_time()
         if profile is not None:

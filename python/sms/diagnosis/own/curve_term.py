@@ -17,12 +17,14 @@ Read = Callable[[Values, Array, Array], Array]
 def with_curve(model: Model, shape: Shape) -> Model | None:
     """The model with as much of a curve (localisation/unknown_inputs.py) as the records confirm of it.
 
-    Beyond its ends it goes on level. None for a curve over time, or for one over a reading of itself.
+    Beyond its ends it goes on level. None for a curve over time, for one over a reading of itself, and for a
+    model that an integrator of CasADi runs.
     """
     name = shape.signal.split(" [")[0]
     read = _reader(model, name)
-    if read is None:
-        return None
+    if read is None or (model.exact is not None and model.exact.adaptive):
+        return None  # CasADi's integrators take no curve
+    model = replace(model, exact=None)
     at, value = np.array(shape.at), shape.confirmed * np.array(shape.value)
 
     def term(p: Values, x: Array, u: Array) -> Array:

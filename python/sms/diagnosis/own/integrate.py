@@ -48,6 +48,8 @@ def _run(
     inner = max(1, int(np.ceil(float(batch.step.max()) / longest - 1e-9)))
     h = batch.step / inner
     felt = _Felt(model, values, batch, inner)
+    exact, none = model.exact, np.zeros_like(batch.start)
+    numbers = exact.numbers(values, n) if exact is not None else none
     x = batch.start
     out = np.empty((samples, len(model.outputs), n))
 
@@ -65,6 +67,10 @@ def _run(
             for i in range(inner):
                 t, middle, end = (i + part for part in (0.0, 0.5, 1.0))
                 first, half, last = felt.during(k, i)
+                if exact is not None:
+                    ends = [none if push is None else push(k + place / inner) for place in (t, end)]
+                    x = exact.advance(numbers, x, (first, last), (ends[0], ends[1]), h)
+                    continue
                 k1 = rate(k + t / inner, x, first)
                 k2 = rate(k + middle / inner, x + 0.5 * h * k1, half)
                 k3 = rate(k + middle / inner, x + 0.5 * h * k2, half)
@@ -73,6 +79,49 @@ def _run(
                 if model.jump is not None:
                     x = _rows(model.jump, values, x, last, len(model.states))
     return out
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """A simulation with its exact derivatives."""
+
+    out: Array
+    """(samples, outputs, n)"""
+    by_start: Array
+    """(samples, outputs, states, n): by the initial state."""
+    by_parameter: Array
+    """(samples, outputs, parameters, n): by all parameters in their order; of none, if not asked for."""
+
+
+def simulate_with_slopes(model: Model, values: Values, batch: Batch, by_parameters: bool) -> Slopes:
+    """As `simulate`, with derivatives: those of each step, chained. For a model from CasADi."""
+    exact = model.exact
+    assert exact is not None
+    samples, _, n = batch.inputs.shape
+    longest = model.longest_step or np.inf
+    inner = max(1, int(np.ceil(float(batch.step.max()) / longest - 1e-9)))
+    felt, numbers = _Felt(model, values, batch, inner), exact.numbers(values, n)
+    states, outputs = len(model.states), len(model.outputs)
+    count = len(model.parameters) if by_parameters else 0
+    x, start = batch.start, np.tile(np.eye(states), (n, 1, 1))
+    parameter = np.zeros((n, states, count))
+    out = np.empty((samples, outputs, n))
+    by_start = np.empty((samples, outputs, states, n))
+    by_parameter = np.empty((samples, outputs, count, n))
+    with np.errstate(all="ignore"):
+        for k in range(samples):
+            out[k], c, *d = exact.output_slopes(numbers, x, felt.at(k), by_parameters)
+            by_start[k] = (c @ start).transpose(1, 2, 0)
+            if by_parameters:
+                by_parameter[k] = (c @ parameter + d[0]).transpose(1, 2, 0)
+            for i in range(inner if k + 1 < samples else 0):
+                first, _, last = felt.during(k, i)
+                h = batch.step / inner
+                x, a, *b = exact.step_slopes(numbers, x, (first, last), h, by_parameters)
+                start = a @ start
+                if by_parameters:
+                    parameter = a @ parameter + b[0]
+    return Slopes(out, by_start, by_parameter)
 
 
 class _Felt:

@@ -12,7 +12,7 @@ and everything must be computed by numpy functions that work element by element 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from inspect import Parameter as Argument
 from inspect import signature
 from typing import Any
@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.arrays import Array
+from sms.diagnosis.own.casadi_model import Equations, equations_of
 from sms.errors import InputError, did_you_mean
 
 Numbers = float | NDArray[np.float64]
@@ -149,6 +150,47 @@ class Model:
     jump: Equation | None = None
     """What happens at once: of (parameters, state, input) to the state thereafter, asked after every step of the
     integration (np.where: a level at the rim stays there, an integrator is reset)."""
+    exact: Equations | None = field(default=None, repr=False)
+    """Of a model from CasADi: both functions with their derivatives, and the step of the integration."""
+
+    @classmethod
+    def from_casadi(
+        cls,
+        *,
+        states: Sequence[State],
+        inputs: Sequence[Input],
+        outputs: Sequence[Output],
+        parameters: Sequence[Parameter],
+        derivative: Callable[[Any, Any, Any], Any],
+        output: Callable[[Any, Any, Any], Any],
+        effects: Sequence[Effect],
+        title: str = "own model",
+        longest_step: float | None = None,
+        guess: Guess | None = None,
+        integrator: str = "rk",
+    ) -> Model:
+        """A model whose functions are written with CasADi's expressions: with exact derivatives (casadi_model.py).
+
+        integrator: "rk", the step of every own model; "cvodes", "idas" or "collocation" for stiff plants. InputError
+        where CasADi is not installed (the extra sms[casadi]).
+        """
+        names = [p.name for p in parameters]
+        made = equations_of(names, len(states), len(inputs), derivative, output, integrator, title)
+        if made.adaptive:
+            longest_step = np.inf
+        return cls(
+            states=states,
+            inputs=inputs,
+            outputs=outputs,
+            parameters=parameters,
+            derivative=made.derivative,
+            output=made.output,
+            effects=effects,
+            title=title,
+            longest_step=longest_step,
+            guess=guess,
+            exact=made,
+        )
 
     def __post_init__(self) -> None:
         self._check_names()
@@ -211,6 +253,16 @@ class Model:
                     f"{self.title}, output {output.name}: range is from {output.range[0]:g} to {output.range[1]:g}; "
                     "write the lowest reading first"
                 )
+
+        if self.exact is not None and (
+            self.jump is not None
+            or self.derivative != self.exact.derivative
+            or self.output != self.exact.output
+        ):
+            raise InputError(
+                f"{self.title}: a model from CasADi has no jump and no other derivative or output than its own; make "
+                "it anew by from_casadi, or write it with numpy"
+            )
 
     def _check_equations(self) -> None:
         """The functions are called once, for two things at a time."""

@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 
 from sms.arrays import Array
 from sms.diagnosis.own.delayed import Delayed
-from sms.diagnosis.own.integrate import Batch, Push, simulate, trajectory
+from sms.diagnosis.own.integrate import (
+    Batch,
+    Push,
+    Slopes,
+    simulate,
+    simulate_with_slopes,
+    trajectory,
+)
 from sms.diagnosis.own.model import Model, Numbers, Values
 from sms.diagnosis.thresholds import DIFFERENCE, INTEGRATION_ERROR, MOST_HALVINGS
 
@@ -116,13 +123,23 @@ class ShootingProblem:
         columns = np.empty((self.rows, len(names)))
         if names:
             self._start = shot.start
-        for first, part in _parts(list(names), LARGEST_BATCH // (2 * len(self.windows))):
+        late = {i.delay for i in self.model.inputs}
+        exact = [n for n in names if n not in late] if self.model.exact is not None else []
+        if exact:
+            for name, slope in zip(
+                exact, self._exact_slopes(params, shot.start, exact), strict=True
+            ):
+                columns[:, list(names).index(name)] = self._flat(self._off(shot, slope))
+        others = [k for k, name in enumerate(names) if name not in exact]
+        for first, part in _parts(
+            [names[k] for k in others], LARGEST_BATCH // (2 * len(self.windows))
+        ):
             steps = [self._difference(params, name) for name in part]
             changes = [{n: s} for n, pair in zip(part, steps, strict=True) for s in pair]
             found = self._errors(params, shot.start, changes)
             for k, (down, up) in enumerate(steps):
                 slope = (found[..., 2 * k + 1, :] - found[..., 2 * k, :]) / (up - down)
-                columns[:, first + k] = self._flat(self._off(shot, slope))
+                columns[:, others[first + k]] = self._flat(self._off(shot, slope))
         return self._flat(shot.residual), columns
 
     def errors(self, params: Values) -> Array:
@@ -232,6 +249,17 @@ class ShootingProblem:
         error = (found - self._measured[:, :, None, :]) / self._noise[:, :, None]
         return np.where(self._used[:, :, None, :], error, 0.0)
 
+    def _with_slopes(self, params: Values, start: Array, by_parameters: bool) -> Slopes:
+        values, batch = self._shifted(params, 1), self._batch(start, 1)
+        return simulate_with_slopes(self.model, values, batch, by_parameters)
+
+    def _exact_slopes(self, params: Values, start: Array, names: Sequence[str]) -> Iterator[Array]:
+        """(samples, outputs, windows) for each parameter."""
+        found = self._with_slopes(params, start, by_parameters=True).by_parameter
+        place = {p.name: k for k, p in enumerate(self.model.parameters)}
+        for name in names:
+            yield np.where(self._used, found[:, :, place[name]] / self._noise, 0.0)
+
     def _difference(self, params: Values, name: str) -> tuple[float, float]:
         """The two values between which a parameter's derivative is taken, within its bounds."""
         p = self.model.parameter(name)
@@ -244,6 +272,12 @@ class ShootingProblem:
     def _by_start(self, params: Values, start: Array) -> tuple[Array, Array]:
         """Errors (samples, outputs, windows), and (windows, samples * outputs, states) by state over its scale."""
         states = len(self._scale)
+        if self.model.exact is not None:
+            there = self._with_slopes(params, start, by_parameters=False)
+            error = np.where(self._used, (there.out - self._measured) / self._noise, 0.0)
+            scaled = there.by_start * self._scale[:, None] / self._noise[:, None]
+            scaled = np.where(self._used[:, :, None], scaled, 0.0)
+            return error, scaled.transpose(3, 0, 1, 2).reshape(len(self.windows), -1, states)
         step = DIFFERENCE * self._scale
         moved = [start]
         for k in range(states):
