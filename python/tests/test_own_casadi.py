@@ -124,6 +124,15 @@ def test_a_stiff_plant_runs_at_the_step_of_its_samples(integrator: str) -> None:
     assert np.allclose(slopes.by_start[:, 0, 0, 0], decay, atol=1e-4)
 
 
+def test_a_run_that_an_integrator_cannot_go_on_with_is_not_finite_and_the_others_are() -> None:
+    """x' = x^2 from 1 ends at 1 s, from -1 never."""
+    model = of_casadi(LAG, lambda p, x, u: [x[0] ** 2], integrator="cvodes")
+    batch = Batch(np.full(2, 0.5), np.zeros((5, 1, 2)), np.array([[1.0, -1.0]]))
+    found = simulate(model, model.values(), batch)[:, 0]
+    assert not np.all(np.abs(found[:, 0]) < 1e6)
+    assert found[:, 1] == pytest.approx(-1.0 / (1.0 + 0.5 * np.arange(5)), rel=1e-4)
+
+
 def test_what_casadi_cannot_take_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="no integrator 'euler'; choose one of rk, cvodes"):
         of_casadi(LAG, stiff, integrator="euler")

@@ -15,7 +15,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
+from io import StringIO
 from typing import Any
 
 import numpy as np
@@ -93,7 +95,7 @@ class Equations:
     def step_slopes(
         self, p: Array, x: Array, u: tuple[Array, Array], h: Array, by_parameters: bool
     ) -> list[Array]:
-        """The same, with its derivatives by state (n, states, states) and, if wanted, by parameters (n, states, parameters)."""
+        """The same and its derivatives: by state (n, states, states), and if wanted by parameters (n, states, all)."""
         none = np.zeros_like(x)
         which = "step by all" if by_parameters else "step by state"
         return self._split(self._call(which, x, *u, none, none, p, h[None]), x.shape[1])
@@ -109,28 +111,18 @@ class Equations:
 
     def _call(self, which: str, *arrays: Array) -> list[Array]:
         n = arrays[0].shape[1]
-        mapped = self._mapped.get((which, n))
-        if mapped is None:
-            mapped = self._mapped[which, n] = self._function(which).map(n)
-        try:
-            found = mapped(*arrays)
-        except (
-            RuntimeError
-        ):  # an integrator that cannot go on: a run that diverges, in one of them at the least
-            return self._one_by_one(which, n, arrays)
-        return [np.asarray(m.full()) for m in (found if isinstance(found, tuple) else (found,))]
-
-    def _one_by_one(self, which: str, n: int, arrays: Sequence[Array]) -> list[Array]:
-        function, parts = self._function(which), []
-        for i in range(n):
-            try:
-                found = function(*(a[:, i] for a in arrays))
-                found = found if isinstance(found, tuple) else (found,)
-                parts.append([np.asarray(m.full()) for m in found])
-            except RuntimeError:
-                sizes = [function.size_out(k) for k in range(function.n_out())]
-                parts.append([np.full(size, np.nan) for size in sizes])
-        return [np.hstack(of_output) for of_output in zip(*parts, strict=True)]
+        if (which, n) not in self._mapped:
+            self._mapped[which, n] = _Mapped.of(self._function(which), n)
+        found = self._mapped[which, n](arrays)
+        if found is not None:
+            return list(found)
+        if n == 1:  # an integrator that cannot go on: a run that diverges
+            return [np.full(size, np.nan) for size in self._mapped[which, 1].sizes]
+        halves = [
+            self._call(which, *(a[:, part] for a in arrays))
+            for part in (slice(None, n // 2), slice(n // 2, None))
+        ]
+        return [np.hstack(of_output) for of_output in zip(*halves, strict=True)]
 
     def _function(self, which: str) -> Any:
         plain = {"derivative": self._derivative, "output": self._output, "step": self._step}
@@ -142,6 +134,53 @@ class Equations:
             function = plain[name]
             self._mapped[which, 0] = function.factory("slopes", function.name_in(), wanted)
         return self._mapped[which, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class _Mapped:
+    """A function of CasADi for n of its arguments at once, called through memory that stays."""
+
+    given: list[Array]
+    found: list[Array]
+    sizes: list[tuple[int, int]]
+    buffer: Any
+    evaluate: Callable[[], None]
+
+    @classmethod
+    def of(cls, function: Any, n: int) -> _Mapped:
+        ca = _casadi()
+        arguments = [ca.MX.sym(f"a{k}", *function.size_in(k)) for k in range(function.n_in())]
+        results = function(*arguments)
+        results = results if isinstance(results, tuple | list) else (results,)
+        mapped = ca.Function("dense", arguments, [ca.densify(r) for r in results]).map(n)
+        buffer, evaluate = mapped.buffer()
+        given = [np.zeros(mapped.nnz_in(k)) for k in range(mapped.n_in())]
+        found = [np.zeros(mapped.nnz_out(k)) for k in range(mapped.n_out())]
+        for k, memory in enumerate(given):
+            buffer.set_arg(k, memoryview(memory.data))
+        for k, memory in enumerate(found):
+            buffer.set_res(k, memoryview(memory.data))
+        sizes = [mapped.size_out(k) for k in range(mapped.n_out())]
+        return cls(given, found, sizes, buffer, evaluate)
+
+    def __call__(self, arrays: Sequence[Array]) -> list[Array] | None:
+        """One array (rows, n * columns) each; None where an integrator failed."""
+        for memory, values in zip(self.given, arrays, strict=True):
+            memory[:] = values.T.ravel()
+        try:
+            with (
+                redirect_stderr(StringIO()),
+                redirect_stdout(StringIO()),
+            ):  # it prints all arguments
+                self.evaluate()
+        except RuntimeError:
+            return None
+        if self.buffer.ret():
+            return None
+        return [
+            m.reshape(columns, rows).T.copy()
+            for m, (rows, columns) in zip(self.found, self.sizes, strict=True)
+        ]
 
 
 def equations_of(
@@ -205,7 +244,9 @@ def _step(ca: Any, rate: Any, integrator: str) -> Any:
         s, t = [ca.SX.sym(n, k) for n, k in zip(arguments, sizes, strict=True)], ca.SX.sym("t")
         ode = s[6] * (rate(s[0], s[1] + t * (s[2] - s[1]), s[5]) + s[3] + t * (s[4] - s[3]))
         dae = {"x": s[0], "t": t, "p": ca.vertcat(*s[1:]), "ode": ode}
-        options = {} if integrator == "collocation" else {"abstol": TOLERANCE, "reltol": TOLERANCE}
+        options: dict[str, Any] = {"show_eval_warnings": False}
+        if integrator != "collocation":
+            options |= {"abstol": TOLERANCE, "reltol": TOLERANCE, "disable_internal_warnings": True}
         solver = ca.integrator("step", integrator, dae, 0.0, 1.0, options)
         after = solver(x0=x, p=ca.vertcat(u0, u1, w0, w1, p, h))["xf"]
     return ca.Function("step", symbols, [after], arguments, ["out"])
