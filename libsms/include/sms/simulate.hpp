@@ -238,9 +238,10 @@ sms_status take_sample(const Params<typename Plant::Scalar>& params, const typen
   return SMS_OK;
 }
 
-// The plant runs to the next sample; after take_sample(). On any but SMS_OK it stands where it could still be computed.
+// The plant runs until `end`, s, which is not later than the next sample; after take_sample(), once a period. On any but
+// SMS_OK it stands where it could still be computed.
 template <typename Plant>
-sms_status run_period(Simulation<Plant>& s) {
+sms_status run_until(const typename Plant::Scalar& end, Simulation<Plant>& s) {
   using S = typename Plant::Scalar;
   S next[Plant::legs];
   for (int i = 0; i < Plant::legs; ++i) {
@@ -250,19 +251,27 @@ sms_status run_period(Simulation<Plant>& s) {
   const S begin = S(s.sample) * s.period;
   sms_status status = SMS_OK;
   // Each command when it arrives.
-  for (S arrived = S(-1), at = S(0); status == SMS_OK && at < s.period; arrived = at) {
+  for (S arrived = S(-1), at = S(0); status == SMS_OK && at < s.period && begin + at < end; arrived = at) {
     at = s.period;
     for (const S& rest : s.delay_rest) {
       at = rest > arrived && rest < at ? rest : at;
     }
-    status = at < s.period && at > S(0) ? integrate_to<Plant>(begin + at, s) : status;
+    const bool within = at < s.period && at > S(0);
+    status = within ? integrate_to<Plant>(begin + at < end ? S(begin + at) : end, s) : status;
     for (int i = 0; i < Plant::legs; ++i) {
       if (s.delay_rest[i] > arrived && !(s.delay_rest[i] > at)) {
         set_command(s.system.input, i, next[i]);
       }
     }
   }
-  status = status == SMS_OK ? integrate_to<Plant>(S(s.sample + 1) * s.period, s) : status;
+  return status == SMS_OK ? integrate_to<Plant>(end, s) : status;
+}
+
+// The plant runs to the next sample; after take_sample().
+template <typename Plant>
+sms_status run_period(Simulation<Plant>& s) {
+  using S = typename Plant::Scalar;
+  const sms_status status = run_until<Plant>(S(s.sample + 1) * s.period, s);
   s.sample += status == SMS_OK ? 1ul : 0ul;
   return status;
 }
