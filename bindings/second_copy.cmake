@@ -4,7 +4,7 @@ include(ExternalProject)
 set(second "${CMAKE_BINARY_DIR}/avx2")
 set(handed_on SMS_ESTIMATION Ceres_DIR Eigen3_DIR pybind11_DIR CMAKE_BUILD_TYPE CMAKE_CXX_FLAGS CMAKE_C_COMPILER
               CMAKE_CXX_COMPILER CMAKE_MAKE_PROGRAM CMAKE_OSX_ARCHITECTURES CMAKE_OSX_DEPLOYMENT_TARGET)
-set(arguments -DSMS_AVX2=ON -DSMS_TESTS=OFF -DSMS_IK_TABLES=OFF)
+set(arguments -DSMS_AVX2=ON -DSMS_TESTS=OFF -DSMS_IK_TABLES=OFF -DSMS_FMU=OFF)
 foreach(name IN LISTS handed_on)
   if(DEFINED ${name})
     list(APPEND arguments "-D${name}=${${name}}")

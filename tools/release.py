@@ -126,6 +126,14 @@ def compiled(build: Path) -> Iterator[dict[str, Any]]:
             "licenses": [{"license": {"id": licence}}],
             "properties": [{"name": "sms:how", "value": "compiled into sms._core"}],
         }
+    yield {
+        "type": "library",
+        "bom-ref": "compiled:fmi-headers",
+        "name": "FMI headers",
+        "version": "3.0",
+        "licenses": [{"license": {"id": "BSD-2-Clause"}}],
+        "properties": [{"name": "sms:how", "value": "compiled into sms/fmu/sms_fmu.so"}],
+    }
 
 
 def sbom(build: Path) -> dict[str, Any]:
