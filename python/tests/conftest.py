@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
 import pytest
 from plant_support import LEAK, write_bench
 from sms import _core
@@ -14,3 +18,35 @@ def leaking_bench(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     if not _core.has_estimation:
         pytest.skip("built without Ceres")
     return diagnose(write_bench(tmp_path_factory.mktemp("leaking"), 2, {"piston_leakage": LEAK}))
+
+
+@pytest.fixture(scope="session")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """(kind, version) -> the FMU of the published machine."""
+    from sms.fmi import export_fmu  # noqa: PLC0415
+
+    folder = tmp_path_factory.mktemp("fmu")
+
+    def of(kind: str, version: str) -> Path:
+        file = folder / f"{kind}-{version}.fmu"
+        if not file.exists():
+            export_fmu(kind, file, version)
+        return file
+
+    return of
+
+
+@pytest.fixture
+def opened(exported: Any, tmp_path: Path) -> Iterator[Any]:
+    """(kind, version) -> an instance of it in fmpy; each freed after the test."""
+    from fmi_support import Slave  # noqa: PLC0415 (fmpy)
+
+    open_now: list[Slave] = []
+
+    def of(kind: str, version: str) -> Slave:
+        open_now.append(Slave(exported(kind, version), tmp_path / f"{kind}-{version}"))
+        return open_now[-1]
+
+    yield of
+    for slave in open_now:
+        slave.fmu.freeInstance()

@@ -24,6 +24,7 @@ FORBIDDEN = {
     "validation": ("report", "cli"),
     "report": ("cli",),
     "demo": ("report", "cli"),
+    "fmi": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),
     "data": ("io", "rigs", "diagnosis", "report", "cli"),
     "link": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),
 }

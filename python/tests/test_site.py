@@ -66,9 +66,9 @@ def test_every_link_leads_somewhere_and_nothing_comes_from_the_network(site: Pat
 
 
 @pytest.mark.full
-def test_the_gallery_has_eight_examples_with_pictures_and_output(site: Path) -> None:
+def test_the_gallery_has_nine_examples_with_pictures_and_output(site: Path) -> None:
     pages = sorted(p for p in (site / "gallery").glob("*.html") if p.stem != "index")
-    assert len(pages) == 8
+    assert len(pages) == 9
     for page in pages:
         text = page.read_text(encoding="utf-8")
         assert f'src="../_images/{page.stem}.svg"' in text

@@ -36,6 +36,7 @@ EXAMPLES = (
     Example("valve", "Identify a valve", c="06_pneumatics.c", also="identification"),
     Example("diagnosis", "Diagnose", also="diagnosis"),
     Example("two_tanks", "A plant of one's own", ("leak",), also="own_model"),
+    Example("fmu", "A loop of FMUs", also="fmi"),
     Example("bus", "The rig on the bus", also="can_tutorial"),
 )
 

@@ -15,6 +15,7 @@ from sms import _core
 from sms.cli import (
     can,
     demo,
+    export,
     identify,
     limits,
     mechanism,
@@ -142,6 +143,7 @@ can.register(app)
 noise.register(app)
 new.register(app)
 schema.register(app)
+export.register(app)
 validate.register(app)
 
 

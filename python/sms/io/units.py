@@ -117,6 +117,14 @@ def si_unit_of(unit: str, where: str) -> str:
     return str(_registry().Quantity(1.0, _parse_unit(unit, where)).to_base_units().units)
 
 
+def base_exponents(si_unit: str) -> dict[str, int]:
+    """Powers of kg, m, s, A, K, mol, cd and rad of a unit of the core, in which no factor is hidden: "N s/m"."""
+    short = {"kilogram": "kg", "meter": "m", "second": "s", "ampere": "A", "kelvin": "K"}
+    short |= {"mole": "mol", "candela": "cd", "radian": "rad"}
+    one = _registry().Quantity(1.0, _parse_unit(si_unit, "params.def")).to_base_units()
+    return {short[str(name)]: int(f"{power:g}") for name, power in one.unit_items()}
+
+
 def from_si(value: float, unit: str, si_unit: str, where: str) -> str:
     """Text for `value` (in `si_unit`) in a person's unit: 0.025 (m) with "mm" is "25 mm"."""
     parsed = _check_dimension(unit, si_unit, where)
