@@ -45,12 +45,7 @@ constexpr Rows kController[] = {{sms::index_of_control_period, sms::index_of_loo
 
 template <int N>
 bool within(const Rows (&rows)[N], int index) {
-  for (const Rows& r : rows) {
-    if (index >= r.first && index <= r.last) {
-      return true;
-    }
-  }
-  return false;
+  return std::any_of(rows, rows + N, [index](const Rows& r) { return index >= r.first && index <= r.last; });
 }
 
 // Whether a parameter is that of the sensor of one of these signals.

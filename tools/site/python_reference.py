@@ -19,6 +19,7 @@ MODULES = (
     "sms.io",
     "sms.io.json_files",
     "sms.data",
+    "sms.fmi",
     "sms.draft",
     "sms.schemas",
     "sms.diagnosis",

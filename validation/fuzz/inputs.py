@@ -63,6 +63,8 @@ BASES = (
     Base("scenario", ("simulate", "tank.toml", *OUT), 1.0, ("tank.toml",)),
     Base("scenario", ("simulate", "deck.toml", *OUT), 2.0, ("deck.*",)),
     Base("scenario", ("sweep", "sweep.toml", "--workers", "1", *OUT), 1.0, ("sweep.toml",)),
+    Base("tank", ("export", "fmu", "tank", "rig.toml", "--fmi", "3.0", *OUT), 0.5, ("*.toml",), 0.3),
+    Base("platform", ("export", "fmu", "platform", "rig.toml", *OUT), 0.5, ("*.toml",), 0.3),
     *(
         Base("logs", ("can", "table", f"run{ending}", "--out", "out/run.csv"), 0.7, (f"run{ending}",))
         for ending in LOG_ENDINGS
