@@ -26,7 +26,7 @@ def _export() -> None:
 
 @export_app.command(
     epilog="Example: **sms export fmu bench report/extended.toml --fmi 3.0 -o bench.fmu** is the bench that a "
-    "diagnosis found. docs/fmi.md has a closed loop of two FMUs in fmpy, and what to do in other tools."
+    "diagnosis found. docs/fmi.md has a closed loop of FMUs in fmpy, and what to do in other tools."
 )
 def fmu(
     kind: Annotated[str, typer.Argument(help="bench, platform, tank or controller.")],
