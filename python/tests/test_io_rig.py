@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from io_support import PARAMETERS, PLAIN_RIG, RECORDS, write_rig
 from sms.io import Declaration, InputError, SignalSource, load_rig
-from sms.io.schema import RigFile, keys_of
+from sms.io.schema import RigFile, keys_of, parse_rig_text
 from sms.parameters import PARAMETERS as TABLE
 
 SIGNALS = """
@@ -272,3 +272,25 @@ def test_every_key_is_on_the_page_of_the_rig_file() -> None:
             table = cells[0].strip(" `[]") or table
             said.setdefault(table, set()).update(re.findall(r"`(\w+)`", cells[1]))
     assert said == {name: set(keys) for name, keys in keys_of(RigFile).items()}
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("2026-11-25", "2026-11-25"),
+        ("2026-11-25T10:30:00", "2026-11-25T10:30:00"),
+        ("2026-11-25T10:30:00+01:00", "2026-11-25T10:30:00+01:00"),
+    ],
+)
+def test_a_rig_file_says_when_its_records_were_measured(
+    tmp_path: Path, written: str, read: str
+) -> None:
+    text = PLAIN_RIG.replace("[rig]", f"[rig]\nmeasured = {written}")
+    assert parse_rig_text(text, tmp_path / "rig.toml").rig.measured.isoformat() == read  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("written", ['"2026-11-25"', "5", "10:00:00"])
+def test_what_is_no_date_is_refused(tmp_path: Path, written: str) -> None:
+    text = PLAIN_RIG.replace("[rig]", f"[rig]\nmeasured = {written}")
+    with pytest.raises(InputError, match=r"\[rig\] measured: must be a date without quotes"):
+        parse_rig_text(text, tmp_path / "rig.toml")

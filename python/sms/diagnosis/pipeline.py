@@ -19,6 +19,7 @@ from sms.diagnosis.result import Diagnosis, Finding
 from sms.errors import InputError
 from sms.io import check as data_check
 from sms.io.json_files import input_hashes, versions
+from sms.io.measured import declared_of, measured_time
 from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.io.thinning import raise_if_too_many, thinned
@@ -107,6 +108,7 @@ def blank_answer(
     rig: Rig, records: Sequence[Record], findings: tuple[Finding, ...], seed: int
 ) -> Diagnosis:
     """The parts of an answer that are known before anything is fitted."""
+    measured, measured_from = measured_time(rig)
     return Diagnosis(
         rig=rig.path.name,
         title=rig.title,
@@ -115,5 +117,9 @@ def blank_answer(
         seed=seed,
         versions=versions(),
         inputs=input_hashes(rig.files),
+        kind=rig.kind,
+        measured=measured,
+        measured_from=measured_from,
+        declared=declared_of(rig),
         command=wording.of_command(rig) if rig.kind in KINDS else "",
     )

@@ -239,6 +239,14 @@ class Diagnosis(Shown):
     versions: dict[str, str] = field(default_factory=dict)
     inputs: dict[str, str] = field(default_factory=dict)
     """File name -> SHA-256 of its content, of every file that was read; empty for a model in Python."""
+    kind: str = ""
+    """Of the rig: "bench", "tank", ...; empty for a model in Python, as are the next three."""
+    measured: str = ""
+    """When its records were measured, ISO 8601; without a zone UTC is meant."""
+    measured_from: str = ""
+    """"stated", or "modification of the records"."""
+    declared: dict[str, Any] = field(default_factory=dict)
+    """What the rig file declares, SI: "model", "control", "signals", "parameters"."""
     command: str = ""
     """Where the valve's command comes from, record or simulated controller, in plain words; empty without a valve."""
     verdict: Verdict = "no-evidence"

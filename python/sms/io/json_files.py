@@ -28,7 +28,9 @@ SCHEMA_VERSIONS: Mapping[str, int] = {
     "comparison": 1,
     "demo": 1,
     "diagnosis": 1,
+    "diagnosis_comparison": 1,
     "forward_kinematics": 1,
+    "history": 1,
     "identify_actuator": 1,
     "identify_flow": 1,
     "identify_friction": 1,
@@ -78,6 +80,13 @@ def document(
         head["inputs"] = hashes
     found: dict[str, Any] = plain(head | dict(content))
     return found
+
+
+def content_digest(content: Mapping[str, Any], without: Iterable[str] = ()) -> str:
+    """SHA-256 of what a JSON file says, whatever its layout and the order of its keys; `without` keys of the top."""
+    said = {key: value for key, value in content.items() if key not in set(without)}
+    text = json.dumps(said, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def versions() -> dict[str, str]:

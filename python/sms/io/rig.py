@@ -10,6 +10,7 @@ import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import date, datetime
 from pathlib import Path
 from typing import Literal
 
@@ -105,6 +106,7 @@ class Rig:
     control: ControlTable = field(default_factory=ControlTable)
     """With the controller that is simulated, if in any record."""
     effects: Path | None = None  #: a file with effects beside those of the catalogue
+    measured: date | datetime | None = None  #: the records, as the file says
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -192,6 +194,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
         effects=None
         if file.effects is None
         else beside(path, file.effects.file, "[effects] file", "file of effects"),
+        measured=file.rig.measured,
     )
     _check_machine(rig)
     return rig

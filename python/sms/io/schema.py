@@ -10,6 +10,7 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping
+from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, get_args
 
@@ -53,6 +54,27 @@ TextOrNumber = Annotated[
 ]
 
 
+def _moment(value: object) -> date | datetime:
+    if isinstance(value, date):  # a datetime is one, too
+        return value
+    raise ValueError("must be a date without quotes, like 2026-11-25 or 2026-11-25T14:30:00")
+
+
+Moment = Annotated[
+    date | datetime,
+    PlainValidator(_moment),
+    PlainSerializer(lambda value: value),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "format": f} for f in ("date", "date-time", "partial-date-time")
+            ]
+        }
+    ),
+]
+"""A date of TOML, with or without a time of day."""
+
+
 def _short_form(key: str) -> BeforeValidator:
     """Let a bare value stand for a table with this one key."""
 
@@ -74,6 +96,8 @@ class RigTable(Table):
     kind: Literal["cylinder", "tank", "bench", "platform", "flow_test", "spool_test"]
     title: str = ""
     notes: str = ""
+    measured: Moment | None = None
+    """When its records were measured; without it, when their files were changed last."""
 
 
 class ModelTable(Table):
