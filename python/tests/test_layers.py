@@ -22,6 +22,7 @@ FORBIDDEN = {
     "scenario": ("report", "sweep", "validation", "cli"),
     "sweep": ("report", "cli"),
     "validation": ("report", "cli"),
+    "history": ("report", "cli"),
     "report": ("cli",),
     "demo": ("report", "cli"),
     "fmi": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -16,6 +17,7 @@ from sms.cli import (
     can,
     demo,
     export,
+    history,
     identify,
     limits,
     mechanism,
@@ -94,6 +96,28 @@ def diagnose(
             help="Of the core; by default as SMS_THREADS says, else 2.",
         ),
     ] = None,
+    history_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--history",
+            metavar="FILE.sqlite",
+            help="Also add the answer to the history of this machine; **sms history** shows it.",
+        ),
+    ] = None,
+    measured: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DATE",
+            help="When the records were measured, for the history; by default as the rig file says, else when the "
+            "records were changed last.",
+        ),
+    ] = None,
+    machine: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="With --history: says that it is this machine, whatever its title."
+        ),
+    ] = None,
     assets: Assets = Place.inside,
 ) -> None:
     """Find what the simulation of a rig gets wrong, name the cause, extend the model, measure the gain.
@@ -105,6 +129,7 @@ def diagnose(
     """
     from sms.diagnosis import diagnose as run  # noqa: PLC0415 (scipy takes a second; --help must not)
     from sms.diagnosis.result import as_json as diagnosis_json  # noqa: PLC0415
+    from sms.io.measured import parse_measured  # noqa: PLC0415
     from sms.io.write import check_output_folder  # noqa: PLC0415
     from sms.report.console import print_diagnosis  # noqa: PLC0415
     from sms.report.files import write_diagnosis  # noqa: PLC0415
@@ -113,6 +138,11 @@ def diagnose(
     if threads is not None:
         use_threads(threads)
     check_output_folder(out)
+    stated = None if measured is None else parse_measured(measured, "--measured")
+    if machine is not None and history_file is None:
+        raise InputError("--machine: it is said of a history; name that with --history")
+    if history_file is not None:
+        history.check_history(history_file, rig, machine)
     columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("reading records", total=1.0)
@@ -122,8 +152,13 @@ def diagnose(
             lambda text, done: progress.update(task, description=text, completed=done),
             empirical,
         )
+        if stated is not None:
+            answer = replace(answer, measured=stated, measured_from="stated")
         progress.update(task, description="writing the report", completed=0.95)
         files = write_diagnosis(answer, rig, out)
+    added = ""
+    if history_file is not None:
+        added = history.add_diagnosis(history_file, answer, out / "diagnosis.json", machine)
     if as_json:
         print(diagnosis_json(answer), end="")
         return
@@ -131,6 +166,8 @@ def diagnose(
     print_diagnosis(answer, console)
     written = f"written: {', '.join(str(f) for f in files)}"
     console.print(written, style="dim", soft_wrap=True, markup=False)
+    if added:
+        console.print(added, style="dim", soft_wrap=True, markup=False)
 
 
 demo.register(app)
@@ -144,6 +181,7 @@ noise.register(app)
 new.register(app)
 schema.register(app)
 export.register(app)
+history.register(app)
 validate.register(app)
 
 

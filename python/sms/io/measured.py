@@ -17,7 +17,7 @@ MeasuredFrom = Literal["stated", "modification of the records", ""]
 
 
 def measured_time(rig: Rig) -> tuple[str, MeasuredFrom]:
-    """ISO 8601 and its origin. Records of the healthy machine (role reference) are of an earlier day and do not count."""
+    """ISO 8601 and its origin. Records of the healthy machine (role reference) are of an earlier day: not counted."""
     if rig.measured is not None:
         return rig.measured.isoformat(), "stated"
     files = [r.file for r in rig.records if r.role != "reference"] or [r.file for r in rig.records]
