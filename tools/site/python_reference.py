@@ -26,6 +26,7 @@ MODULES = (
     "sms.diagnosis.result",
     "sms.diagnosis.own",
     "sms.diagnosis.design.detection_limits",
+    "sms.history",
     "sms.report.files",
     "sms.identification.actuator",
     "sms.identification.flow",

@@ -166,6 +166,8 @@ def _parsed(text: str, source: str) -> dict[str, Any]:
             f"{source}, line {problem.lineno}: not valid JSON ({problem.msg}), perhaps cut off; copy it again, or "
             "diagnose again"
         ) from None
+    except InputError:
+        raise
     except (RecursionError, ValueError):
         raise InputError(f"{source}: not JSON that can be read; name a {NAME}") from None
     if not isinstance(content, dict):
