@@ -257,7 +257,13 @@ def _record(trial: Trial, excited_by: str, seed: np.random.SeedSequence) -> dict
     """The columns of one record, by name without unit."""
     for_plan, for_noise = (np.random.default_rng(s) for s in seed.spawn(2))
     plan = trial.rig.plan(excited_by, for_plan)
-    return recorded(trial, trial.truth, plan, trial.rig.duration, for_noise)
+    columns = recorded(trial, trial.truth, plan, trial.rig.duration, for_noise)
+    if not all(np.isfinite(column).all() for column in columns.values()):
+        hidden = " and ".join(h.effect.key for h in trial.hidden) or "nothing"
+        raise ValueError(
+            f"{trial.rig.kind}, seed {trial.seed}, {hidden} hidden: the simulation of {excited_by} diverges"
+        )
+    return columns
 
 
 def recorded(

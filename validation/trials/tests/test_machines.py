@@ -23,6 +23,7 @@ from validation.trials.machines import (
     run_tasks,
     tasks,
 )
+from validation.twins.draw import draw
 
 FRESH = 20
 
@@ -52,6 +53,16 @@ def test_goals_and_the_confusion_matrix_are_counts() -> None:
     alarms = next(g for g in goals(outcomes) if "healthy" in g.what)
     assert (alarms.count, alarms.of, alarms.share) == (1, 2, 0.5)
     assert confusion(outcomes)["nothing"] == {"no-evidence": 1, "unknown": 1}
+
+
+def test_a_pair_that_cannot_be_simulated_is_said_and_not_drawn(tmp_path: Path) -> None:
+    """Bench, seed 992009: almost no friction, carried by seals that bend before they slide."""
+    truth = tmp_path / "sealed" / "truth.json"
+    with pytest.raises(ValueError, match="coulomb_friction hidden: the simulation of ends diverges"):
+        draw("bench", 992009, tmp_path / "records", truth, ["presliding", "coulomb_friction"])
+    assert not (tmp_path / "records").exists()
+    trial = hide(Task("bench", 992009, "pair", 3.0), tmp_path / "records", truth)
+    assert {h.effect.key for h in trial.hidden} != {"presliding", "coulomb_friction"}
 
 
 def test_a_gain_is_held_against_that_of_the_true_model() -> None:
