@@ -46,7 +46,15 @@ def test_the_bill_of_materials(tmp_path: Path) -> None:
     assert (bill["bomFormat"], bill["specVersion"]) == ("CycloneDX", "1.5")
     assert bill["metadata"]["component"]["version"] == release.version()
     by_name = {c["name"]: c for c in bill["components"]}
-    assert by_name.keys() >= {"Eigen", "FMI headers", "pybind11", "numpy", "plotly", "distributed", "control"}
+    assert by_name.keys() >= {
+        "Eigen",
+        "FMI headers",
+        "pybind11",
+        "numpy",
+        "plotly",
+        "distributed",
+        "control",
+    }
     if sms._core.has_estimation:
         assert "Ceres Solver" in by_name
     assert all(re.match(r"\d", c["version"]) for c in bill["components"])

@@ -71,12 +71,21 @@ def test_noise_of_clean_records_is_what_a_fine_converter_would_leave(tmp_path: P
 
 
 @pytest.mark.parametrize("kind", ["bench", "platform", "tank"])
-def test_every_output_of_a_rig_has_a_noise_although_none_is_declared_and_it_rests(kind: str) -> None:
+def test_every_output_of_a_rig_has_a_noise_although_none_is_declared_and_it_rests(
+    kind: str,
+) -> None:
     """A leg's signals are named with its number."""
     rig = published_rig(kind)
     rig = replace(rig, signals={n: replace(s, noise=None) for n, s in rig.signals.items()})
     outputs = kind_of(rig).outputs
-    at_rest = Run("at rest", "identify", np.arange(99) / 200, dict.fromkeys(outputs, np.ones(99)), frozenset(), {})
+    at_rest = Run(
+        "at rest",
+        "identify",
+        np.arange(99) / 200,
+        dict.fromkeys(outputs, np.ones(99)),
+        frozenset(),
+        {},
+    )
     assert all(0.0 < noise < 1e4 for noise in noise_of(rig, kind_of(rig), [at_rest]).values())
 
 

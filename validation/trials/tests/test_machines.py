@@ -58,7 +58,9 @@ def test_goals_and_the_confusion_matrix_are_counts() -> None:
 def test_a_pair_that_cannot_be_simulated_is_said_and_not_drawn(tmp_path: Path) -> None:
     """Bench, seed 992009: almost no friction, carried by seals that bend before they slide."""
     truth = tmp_path / "sealed" / "truth.json"
-    with pytest.raises(ValueError, match="coulomb_friction hidden: the simulation of ends diverges"):
+    with pytest.raises(
+        ValueError, match="coulomb_friction hidden: the simulation of ends diverges"
+    ):
         draw("bench", 992009, tmp_path / "records", truth, ["presliding", "coulomb_friction"])
     assert not (tmp_path / "records").exists()
     trial = hide(Task("bench", 992009, "pair", 3.0), tmp_path / "records", truth)
