@@ -53,7 +53,8 @@ def activity(runs: Runs, params: _core.Params, column: Array) -> Activity | None
         a = hidden[rows] / scale
         gram = a.T @ a
         ridge = INPUT_RIDGE * np.trace(gram) / len(gram) * np.eye(len(gram))
-        x = np.linalg.solve(gram + ridge, a.T @ column[rows])
+        # Nothing is read of an input in a window whose readings are masked, or where the load rests, held by friction.
+        x = np.linalg.solve(gram + ridge, a.T @ column[rows]) if a.any() else np.zeros(len(gram))
         missed += float(np.sum((column[rows] - a @ x) ** 2))
         size.append(x / scale)
     if missed > CANNOT * float(column @ column):
