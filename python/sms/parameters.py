@@ -55,6 +55,10 @@ LINEARITY = tuple(
     if name.startswith("sensor_linearity_") and row.uncertainty > 0.0
 )
 """By how much sensors deviate from their best straight lines, of their spans."""
+SENSORS = tuple(n for n, p in PARAMETERS.items() if n.startswith("sensor_") and p.uncertainty > 0.0)
+"""Zero and gain of pressure sensors, which are calibrated to so much, and the linearity of all."""
+SPECIMENS = MAPS + tuple(n for n in SENSORS if n.rpartition("_")[2] not in ("roll", "pitch"))
+"""What two valves, cylinders or sensors of one type differ by: each leg of a machine with three has its own."""
 
 
 # ---- machines with three legs ----------------------------------------------------------------------
@@ -71,7 +75,11 @@ def is_of_leg(name: str) -> bool:
 
 
 def _of_legs() -> Mapping[str, Parameter]:
-    """What one leg has more: none, and within bounds in which the leg's own value keeps to those of params.def."""
+    """What one leg has more: none, and within bounds in which the leg's own value keeps to those of params.def.
+
+    What is known of a curve or a sensor is known of each leg's own, and of what the legs have in common nothing besides.
+    """
+    common = {n: replace(row, uncertainty=0.0) for n, row in PARAMETERS.items() if n in SPECIMENS}
     more = {
         f"{name}:{leg}": replace(
             row,
@@ -79,12 +87,12 @@ def _of_legs() -> Mapping[str, Parameter]:
             lower=row.lower - row.default,
             default=0.0,
             upper=row.upper - row.default,
-            uncertainty=0.0,
+            uncertainty=row.uncertainty if name in SPECIMENS else 0.0,
         )
         for name, row in PARAMETERS.items()
         for leg in (1, 2, 3)
     }
-    return MappingProxyType(dict(PARAMETERS) | more)
+    return MappingProxyType(dict(PARAMETERS) | common | more)
 
 
 LEG_PARAMETERS: Mapping[str, Parameter] = _of_legs()

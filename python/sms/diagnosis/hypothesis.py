@@ -21,10 +21,8 @@ from sms.estimation.least_squares import MOST_STEPS, Free, Solution, WindowFit
 from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
-from sms.parameters import MAPS, PARAMETERS, Parameter
+from sms.parameters import LINEARITY, MAPS, PARAMETERS, SENSORS, Parameter, common_parameter
 
-SENSORS = tuple(n for n, p in PARAMETERS.items() if n.startswith("sensor_") and p.uncertainty > 0.0)
-"""Zero and gain of pressure sensors, which are calibrated to so much, and the linearity of all."""
 ALWAYS_UNCERTAIN = ("stiction_shape", *MAPS, *SENSORS)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
 TURNS, SETTLED = 2, 0.2
@@ -32,8 +30,10 @@ TURNS, SETTLED = 2, 0.2
 MOST_INFLATED = 10.0
 """How many times larger a standard error may be by the scatter of blocks than by the noise: with few blocks, that
 scatter is hardly known itself. Judgement."""
+CURVES = (*MAPS, *LINEARITY)
 WIDE = 3.0
-"""Half widths that a map may be off somewhere: what is declared of a map is that of most of its values."""
+"""Half widths that a curve may be off somewhere: what is declared of a map or a sensor's line is that of most of it, and
+a bow is not the form of every such error."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Hypothesis:
     @property
     def with_exact_maps(self) -> Hypothesis:
         """The valve's tables and the friction curve taken as they are."""
-        free = {n: bounds for n, bounds in self.free.items() if n not in MAPS}
+        free = {n: bounds for n, bounds in self.free.items() if common_parameter(n) not in MAPS}
         return replace(self, free=free, known={n: u for n, u in self.known.items() if n in free})
 
     def with_effect(
@@ -175,12 +175,12 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     names = [n for n, d in rig.parameters.items() if d.fit]
     of_effects = [n for e in effects for n in e.parameters if n not in names]
     # Of a cylinder the noise is not declared, and what its sensors are calibrated to neither.
-    known = [n for n in of_effects if n in rig.parameters or n not in SENSORS]
+    known = [n for n in of_effects if n in rig.parameters or common_parameter(n) not in SENSORS]
     if (
         data.identify.whitened
     ):  # a simulation depends on every parameter, not only on those of effects
         known += [n for n, d in rig.parameters.items() if d.uncertainty > 0.0 and not d.fit]
-        known += [n for n in ALWAYS_UNCERTAIN if n in rig.table and n not in rig.parameters]
+        known += [n for n in rig.table if common_parameter(n) in ALWAYS_UNCERTAIN]
     free: dict[str, tuple[float, float]] = {}
     uncertain: dict[str, float] = {}
     for name in dict.fromkeys(names + known):
@@ -189,7 +189,7 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
             free[name] = (bounds.lower, bounds.upper)
         elif declared.uncertainty > 0.0:
             uncertain[name] = declared.uncertainty
-            room = declared.uncertainty * (WIDE if name in MAPS else 1.0)
+            room = declared.uncertainty * (WIDE if common_parameter(name) in CURVES else 1.0)
             free[name] = (
                 max(bounds.lower, declared.value - room),
                 min(bounds.upper, declared.value + room),

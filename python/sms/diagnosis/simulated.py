@@ -63,7 +63,7 @@ from sms.diagnosis.wording_simulated import (
     still_hidden_in_words,
     words_of_inconsistency,
 )
-from sms.parameters import MAPS
+from sms.parameters import MAPS, common_parameter
 
 
 @dataclass(frozen=True)
@@ -283,5 +283,5 @@ def _hidden(fitted: Fitted, data: Data, excess: LackOfFit, rng: np.random.Genera
     chi_square = float(np.sum(np.maximum(excess.identify, 0.0) * excess.floor)) * rows
     free = nuisance_of(fitted)
     # What is missing is looked for beside the maps, not in what they may be off by.
-    free = free.without(*MAPS)
+    free = free.without(*(n for n in free.names if common_parameter(n) in MAPS))
     return estimate_unknown_inputs(runs, free, fitted.fit.residual, fitted.params, chi_square, rng)

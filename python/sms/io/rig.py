@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date, datetime
 from pathlib import Path
 from typing import Literal
@@ -32,6 +32,7 @@ from sms.io.schema import (
 from sms.io.signal_sources import SignalSource, sources_of
 from sms.io.signals import (
     KINDS,
+    LEGS,
     without_leg,
 )
 from sms.io.units import interval_to_si, to_si
@@ -41,6 +42,7 @@ from sms.parameters import (
     LEG_PARAMETERS,
     LINEARITY,
     PARAMETERS,
+    SPECIMENS,
     Parameter,
     is_of_leg,
 )
@@ -118,11 +120,9 @@ class Rig:
         """What is known of a parameter: from the file, else the default and its uncertainty."""
         if name in self.parameters:
             return self.parameters[name]
-        if is_of_leg(name) and name in self.table:
-            return Declaration(0.0, 0.0)
-        if name not in PARAMETERS:
+        if name not in self.table:
             raise KeyError(f"no parameter '{name}'; {did_you_mean(name, PARAMETERS)}")
-        return Declaration(PARAMETERS[name].default, PARAMETERS[name].uncertainty)
+        return Declaration(self.table[name].default, self.table[name].uncertainty)
 
     @property
     def table(self) -> Mapping[str, Parameter]:
@@ -150,7 +150,7 @@ def load_rig(path: str | os.PathLike[str]) -> Rig:
 
 def interpret(file: RigFile, path: Path) -> Rig:
     """Turn a rig file of right structure into SI units, known names and files that exist."""
-    data = file.data
+    data, kind = file.data, file.rig.kind
     controls = [
         _control(table, file.control, number, path) for number, table in enumerate(file.records)
     ]
@@ -165,7 +165,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
             raise InputError(f"{where}: a speed is not negative; write 0 or more")
     rig = Rig(
         path=path,
-        kind=file.rig.kind,
+        kind=kind,
         title=file.rig.title or path.stem,
         notes=file.rig.notes,
         layout=DataLayout(
@@ -176,11 +176,14 @@ def interpret(file: RigFile, path: Path) -> Rig:
         skip_first=data.skip_first,
         speed_above=speed_above,
         signals=sources_of(file, controls, path),
-        parameters=_half_widths(file, path)
-        | {
-            name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(file.rig.kind))
-            for name, table in file.parameters.items()
-        },
+        parameters=_of_each_leg(
+            _half_widths(file, path)
+            | {
+                name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(kind))
+                for name, table in file.parameters.items()
+            },
+            kind,
+        ),
         records=_records(file.records, controls, data, path),
         related=tuple(
             RelatedRig(
@@ -245,7 +248,7 @@ def _declaration(
         remedy = f"did you mean '{near}'?" if near else "see the table of parameters (params.def)"
         raise InputError(f"{where}: there is no such parameter; {remedy}")
     parameter = known[name]
-    value, uncertainty = parameter.default, parameter.uncertainty
+    value, uncertainty = parameter.default, PARAMETERS.get(name, parameter).uncertainty
     if table.value is not None:
         value = to_si(table.value, parameter.unit, where)
         check_bounds(parameter, value, where)
@@ -285,6 +288,19 @@ def _half_widths(file: RigFile, path: Path) -> dict[str, Declaration]:
             raise InputError(f"{where}: {text} is no half width; write 0 to {100.0 * most:.0f} %")
         declared |= {name: Declaration(PARAMETERS[name].default, half_width) for name in names}
     return declared
+
+
+def _of_each_leg(declared: dict[str, Declaration], kind: str) -> dict[str, Declaration]:
+    """How well curves and sensors are known, said of a platform in a word, is said of those of each leg."""
+    if kind != "platform":
+        return declared
+    legs: dict[str, Declaration] = {}
+    for name in SPECIMENS:
+        if name in declared and not declared[name].fit:
+            own = Declaration(0.0, declared[name].uncertainty)
+            legs |= {f"{name}:{leg}": own for leg in LEGS}
+            declared[name] = replace(declared[name], uncertainty=0.0)
+    return legs | declared
 
 
 def check_bounds(parameter: Parameter, value: float, where: str) -> None:

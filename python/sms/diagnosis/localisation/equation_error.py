@@ -34,7 +34,7 @@ from sms.estimation.least_squares import Free, changed, fit_windows
 from sms.estimation.problem import Problem
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
-from sms.parameters import MAPS
+from sms.parameters import MAPS, common_parameter
 
 
 @dataclass(frozen=True)
@@ -131,8 +131,8 @@ def errors_of(
         if _averaging(run).shape[0]
     ]
     # An error of the maps would take any flow or friction that is missing.
-    free = [f for f in free_of(fitted.hypothesis) if f.name not in MAPS]
-    neutral = [n for n in MAPS if n in fitted.hypothesis.free]
+    free = [f for f in free_of(fitted.hypothesis) if common_parameter(f.name) not in MAPS]
+    neutral = [n for n in fitted.hypothesis.free if common_parameter(n) in MAPS]
     params = changed(fitted.params, neutral, np.zeros(len(neutral)))
     felt = _felt(fed, params, [f.name for f in free])
     return fed, [
