@@ -101,11 +101,13 @@ class Line:
 
     def __init__(self, columns: Array, target: Array) -> None:
         self.columns, self.target = columns, target
+        self.asked: list[str] = []
 
     def evaluate(self, params: _core.Params, names: list[str] | None = None) -> tuple[Array, Array]:
         value = np.array([params["coulomb_force"], params["viscous_friction"]])
         order = {"coulomb_force": 0, "viscous_friction": 1}
         chosen = [order[n] for n in names or []]
+        self.asked += names or []
         return self.columns @ value - self.target, self.columns[:, chosen]
 
 
@@ -139,11 +141,18 @@ def test_a_fit_from_an_old_jacobian_ends_where_an_exact_one_does() -> None:
     line = Line(columns, target)
     exact = fit_windows(line, start, free)  # type: ignore[arg-type]
     old = columns * random.uniform(0.7, 1.4, size=2)
-    found = fit_windows(line, start, free, slopes=old)  # type: ignore[arg-type]
+    both = dict(zip(("coulomb_force", "viscous_friction"), old.T, strict=True))
+    found = fit_windows(line, start, free, nearby=both)  # type: ignore[arg-type]
     assert found.converged
     assert found.jacobian == pytest.approx(columns)
     for name in ("coulomb_force", "viscous_friction"):
         assert found.params[name] == pytest.approx(exact.params[name], rel=0.02)
+    line.asked.clear()
+    one = {"viscous_friction": old[:, 1]}
+    found = fit_windows(line, start, free, nearby=one, kept=one)  # type: ignore[arg-type]
+    assert "coulomb_force" in line.asked and "viscous_friction" not in line.asked
+    assert found.jacobian[:, 0] == pytest.approx(columns[:, 0])
+    assert found.params["coulomb_force"] == pytest.approx(exact.params["coulomb_force"], rel=0.02)
 
 
 def test_screening_finds_the_column_that_is_there_and_none_where_there_is_none() -> None:

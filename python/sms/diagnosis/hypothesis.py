@@ -21,7 +21,15 @@ from sms.estimation.least_squares import MOST_STEPS, Free, Solution, WindowFit
 from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
-from sms.parameters import LINEARITY, MAPS, PARAMETERS, SENSORS, Parameter, common_parameter
+from sms.parameters import (
+    LINEARITY,
+    MAPS,
+    PARAMETERS,
+    SENSORS,
+    SPECIMENS,
+    Parameter,
+    common_parameter,
+)
 
 ALWAYS_UNCERTAIN = ("stiction_shape", *MAPS, *SENSORS)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
@@ -98,6 +106,11 @@ class Fitted:
     @property
     def params(self) -> _core.Params:
         return self.fit.params
+
+    @property
+    def slopes(self) -> dict[str, Array]:
+        """Of each free parameter (rows,): how the residual changes with it."""
+        return dict(zip(self.hypothesis.free, self.fit.jacobian.T, strict=True))
 
     def whiten(self, values: Array) -> Array:
         """Residuals or sensitivities (rows, ...) of the records it was fitted to, as independent as noise."""
@@ -206,19 +219,22 @@ def fit(
     runs: Runs,
     initial: _core.Params | None = None,
     most_steps: int = MOST_STEPS,
-    slopes: Mapping[str, Array] | None = None,
+    nearby: Mapping[str, Array] | None = None,
     discrepancy: Discrepancy | None = None,
+    roughly: bool = False,
 ) -> Fitted:
     """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks.
 
-    most_steps: Jacobians that are worked out at most. slopes: parameter -> (rows,) change of the residual with it near
-    the initial ones, of all that are free.
+    most_steps: Jacobians that are worked out at most. nearby: parameter -> (rows,) change of the residual with it near
+    the initial ones. roughly: of what two specimens of a type differ by, those serve to the end.
     """
     free = free_of(hypothesis)
     names = [f.name for f in free]
-    columns = np.column_stack([slopes[n] for n in names]) if slopes and names else None
+    slopes = {n: column for n, column in (nearby or {}).items() if n in names}
+    kept = {n for n in slopes if roughly and common_parameter(n) in SPECIMENS}
     pull = weights_of(hypothesis, names)
-    found = runs.fit(initial or hypothesis.start, free, pull, most_steps, columns, discrepancy)
+    start = initial or hypothesis.start
+    found = runs.fit(start, free, pull, most_steps, slopes, kept, discrepancy)
     fitted = Fitted(hypothesis, found, np.empty((0, 0)), discrepancy)
     covariance = _covariance(fitted, pull, runs)
     held = np.array(found.at_bound, dtype=bool)
@@ -231,7 +247,7 @@ def fit_with_discrepancy(
     runs: Runs,
     initial: _core.Params | None = None,
     near: Discrepancy | None = None,
-    slopes: Mapping[str, Array] | None = None,
+    nearby: Mapping[str, Array] | None = None,
 ) -> Fitted:
     """Generalised least squares: parameters and the size of what no parameter explains, in turn (discrepancy.py).
 
@@ -242,7 +258,7 @@ def fit_with_discrepancy(
     if not runs.whitened:
         return fit(hypothesis, runs, params)
     now = near or runs.discrepancy(params, residual_of(runs, params))
-    return settled(fit(hypothesis, runs, params, slopes=slopes, discrepancy=now), runs)
+    return settled(fit(hypothesis, runs, params, nearby=nearby, discrepancy=now), runs)
 
 
 def settled(fitted: Fitted, runs: Runs) -> Fitted:
@@ -252,11 +268,10 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
         if before is None:
             return fitted
         now = before.fitted_to(fitted.fit.residual)
-        slopes = dict(zip(fitted.hypothesis.free, fitted.fit.jacobian.T, strict=True))
         felt = before.tau > 0.0
         if np.all(np.abs(np.log(now.tau[felt] / before.tau[felt])) < SETTLED):
             break
-        fitted = fit(fitted.hypothesis, runs, fitted.params, slopes=slopes, discrepancy=now)
+        fitted = fit(fitted.hypothesis, runs, fitted.params, nearby=fitted.slopes, discrepancy=now)
     return fitted
 
 

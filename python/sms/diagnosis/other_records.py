@@ -73,12 +73,9 @@ def refitted_on(
     start = changed(h.start, list(held), np.array([fitted.params[n] for n in held]))
     known = {n: u for n, u in h.known.items() if n not in held}
     moved = replace(h, start=start, free=free, known=known)
-    slopes = (
-        {} if near is None else dict(zip(near.hypothesis.free, near.fit.jacobian.T, strict=True))
-    )
-    known_slopes = slopes if set(free) <= set(slopes) else None
+    slopes = {} if near is None else near.slopes
     if fitted.discrepancy is not None and allowed is None:
         allowed = runs.discrepancy(fitted.params, residual_of(runs, fitted.params))
-        return fit(moved, runs, fitted.params, REFIT_STEPS, known_slopes, allowed)
-    steps = REFIT_STEPS if known_slopes is None else REFIT_NEAR
-    return fit(moved, runs, fitted.params, steps, known_slopes, allowed)
+        return fit(moved, runs, fitted.params, REFIT_STEPS, slopes, allowed)
+    steps = REFIT_STEPS if near is None else REFIT_NEAR
+    return fit(moved, runs, fitted.params, steps, slopes, allowed, roughly=True)

@@ -7,10 +7,12 @@ that misses by far more than the noise, whose last digit nobody reads.
 
 A Jacobian costs as much as many residuals. While steps bring about what they promise it is kept, corrected by what each
 step has shown (Broyden 1965); a fit ends with a Jacobian that was worked out where it ends, if it may work out so many.
+Sensitivities to what hardly moves may be taken over from a model nearby, and are then only corrected so.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -114,10 +116,34 @@ class _Objective:
     def residual(self, value: Array) -> Array:
         return self._problem.evaluate(self.params(value), ())[0]
 
-    def slopes(self, value: Array) -> tuple[Array, Array]:
-        """Residual (rows,) and Jacobian (rows, free)."""
-        residual, jacobian = self._problem.evaluate(self.params(value), self._names)
-        return residual, jacobian * self.scale
+    def begun(self, value: Array, nearby: Mapping[str, Array]) -> _Iterate:
+        """With the sensitivities of a model nearby; those that it does not have are worked out."""
+        new = [k for k, name in enumerate(self._names) if name not in nearby]
+        residual, jacobian = self._worked_out(value, new)
+        if len(new) == len(self._names):
+            return _Iterate(value, residual, jacobian, exact=True)
+        slope = np.empty((len(residual), len(self._names)))
+        slope[:, new] = jacobian
+        for k, name in enumerate(self._names):
+            if name in nearby:
+                slope[:, k] = nearby[name] * self.scale[k]
+        return _Iterate(value, residual, slope, exact=False)
+
+    def work_out(self, at: _Iterate, kept: Collection[str]) -> None:
+        """Residual and Jacobian where it stands, but for the sensitivities that are kept."""
+        new = [k for k, name in enumerate(self._names) if name not in kept]
+        at.residual, jacobian = self._worked_out(at.value, new)
+        at.exact = True
+        if len(new) == len(self._names):
+            at.slope = jacobian
+        else:
+            at.slope[:, new] = jacobian
+
+    def _worked_out(self, value: Array, numbers: list[int]) -> tuple[Array, Array]:
+        """Residual (rows,) and the Jacobian (rows, numbers) of some of the parameters."""
+        names = [self._names[k] for k in numbers]
+        residual, jacobian = self._problem.evaluate(self.params(value), names)
+        return residual, jacobian * self.scale[numbers]
 
     def cost(self, residual: Array, value: Array) -> float:
         return float(residual @ residual + np.sum((self.pull @ (value - self.centre)) ** 2))
@@ -139,19 +165,16 @@ def fit_windows(
     free: list[Free],
     most_steps: int = MOST_STEPS,
     pull: Array | None = None,
-    slopes: Array | None = None,
+    nearby: Mapping[str, Array] | None = None,
+    kept: Collection[str] = (),
 ) -> WindowFit:
     """Minimise |residual|^2 + |pull (value - centre)|^2 within the bounds, from `initial`.
 
-    pull: (r, free) per unit; each parameter's own if left out. slopes: (rows, free), a Jacobian from nearby to begin
-    with. most_steps: Jacobians that are worked out at most.
+    pull: (r, free) per unit; each parameter's own if left out. most_steps: Jacobians that are worked out at most.
+    nearby: (rows,) sensitivity to each parameter to begin with; those of the parameters in `kept` are never worked out.
     """
     objective = _Objective(problem, initial, free, pull)
-    value = objective.start
-    if slopes is None:
-        at = _Iterate(value, *objective.slopes(value), exact=True)
-    else:
-        at = _Iterate(value, objective.residual(value), slopes * objective.scale, exact=False)
+    at = objective.begun(objective.start, nearby or {})
     worked_out, converged = int(at.exact), not free
     for _ in range(SECANTS * most_steps if free else 0):
         little = ENOUGH + _worthless(at.residual, at.slope)
@@ -162,20 +185,20 @@ def fit_windows(
         if at.exact and gained < little:
             converged = True
             if gained > 0.0:
-                at.residual, at.slope = objective.slopes(at.value)
+                objective.work_out(at, kept)
             break
         if gained >= max(little, AS_PROMISED * promised):
             missed = (after - at.residual - at.slope @ moved) / max(float(moved @ moved), 1e-300)
             at.slope += np.outer(missed, moved)
             at.residual, at.exact = after, False
         elif worked_out < most_steps:
-            at.residual, at.slope = objective.slopes(at.value)
-            at.exact, worked_out = True, worked_out + 1
+            objective.work_out(at, kept)
+            worked_out += 1
         else:
             at.residual = after if gained > 0.0 else at.residual
             break
     if not at.exact and worked_out < most_steps:
-        at.residual, at.slope = objective.slopes(at.value)
+        objective.work_out(at, kept)
     margin = 1e-6
     held = (at.value <= objective.lower + margin) | (at.value >= objective.upper - margin)
     return WindowFit(

@@ -18,6 +18,9 @@ from sms import _core
 from sms.arrays import Array
 from sms.estimation.problem import Problem
 
+RANK = 1e-9
+"""Of a column's length: what others cannot do of it, below which it is one of them. Numerics."""
+
 
 @dataclass(frozen=True)
 class Joint:
@@ -60,12 +63,16 @@ class Nuisance:
         out: Array = np.concatenate([rows, below])
         return out
 
+    @property
+    def _stacked(self) -> Array:
+        """(n + r, k): the Jacobian and what is declared, columns of length 1."""
+        stacked = np.vstack([self.jacobian, self.pull])
+        return np.asarray(stacked / np.maximum(np.linalg.norm(stacked, axis=0), 1e-300))
+
     def basis(self) -> Array:
         """(n + r, rank): an orthonormal basis of what the free parameters can do."""
-        stacked = np.vstack([self.jacobian, self.pull])
-        stacked = stacked / np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
-        q, r = np.linalg.qr(stacked)
-        return np.asarray(q[:, np.abs(np.diag(r)) > 1e-9])
+        q, r = np.linalg.qr(self._stacked)
+        return np.asarray(q[:, np.abs(np.diag(r)) > RANK])
 
 
 def pulls(names: Sequence[str], known: Mapping[str, float], joint: Joint | None = None) -> Array:
@@ -116,10 +123,43 @@ def nuisance_at(
 
 def project(nuisance: Nuisance, columns: Array, names: Sequence[str]) -> Array:
     """(rows + known, m): what of columns (rows, m) the free parameters cannot do; its own is no rival."""
-    basis = nuisance.basis()
-    out = np.zeros((len(columns) + len(nuisance.pull), columns.shape[1]))
+    q, r = np.linalg.qr(nuisance._stacked)
+    alone = np.abs(np.diag(r)) > RANK
+    basis = q[:, alone]
+    full = nuisance.with_declared(columns)
+    out = full - basis @ (basis.T @ full)
     for i, name in enumerate(names):
-        q = nuisance.without(name).basis() if name in nuisance.names else basis
-        full = nuisance.with_declared(columns[:, i])
-        out[:, i] = full - q @ (q.T @ full)
+        if name not in nuisance.names:
+            continue
+        if alone.all():
+            out[:, i] = _with_its_own(nuisance, q, r, name, full[:, i], out[:, i])
+        else:
+            others = nuisance.without(name).basis()
+            out[:, i] = full[:, i] - others @ (others.T @ full[:, i])
     return out
+
+
+def _with_its_own(
+    nuisance: Nuisance, q: Array, r: Array, name: str, full: Array, rest: Array
+) -> Array:
+    """What of `full` all parameters but one cannot do, from `rest`, what all together cannot.
+
+    The stacked matrix is Q R. What the one can do and the others cannot is along Q w, with w the solution of R' w = e;
+    and they may do what is declared of the one (Nuisance.without).
+    """
+    k = nuisance.names.index(name)
+    unit = np.zeros(len(nuisance.names))
+    unit[k] = 1.0
+    w = solve_triangular(r, unit, trans="T")
+    own = q @ (w / np.linalg.norm(w))
+    rest = rest + own * float(own @ full)
+    declared = np.concatenate([np.zeros(len(nuisance.jacobian)), nuisance.pull[:, k]])
+    length = float(np.linalg.norm(declared))
+    if length > 0.0:
+        declared /= length
+        declared -= q @ (q.T @ declared)
+        declared += own * float(own[len(nuisance.jacobian) :] @ nuisance.pull[:, k]) / length
+        size = float(np.linalg.norm(declared))
+        if size > RANK:
+            rest = rest - declared * float(declared @ rest) / size**2
+    return np.asarray(rest)

@@ -7,7 +7,7 @@ windows are its strokes (rigs/cylinder.py). A window, or a few in a row, is the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -79,20 +79,24 @@ class Runs:
         free: list[Free],
         pull: Array,
         most_steps: int = MOST_STEPS,
-        slopes: Array | None = None,
+        nearby: Mapping[str, Array] | None = None,
+        kept: Collection[str] = (),
         discrepancy: Discrepancy | None = None,
     ) -> Solution:
         """Least squares over the free parameters; of a simulated rig pulled by rows (r, free), in at most so many
-        steps, with a Jacobian (rows, free) to begin with, and generalised by the covariance of a discrepancy.
+        steps, with sensitivities (rows,) of a model nearby to begin with, of which some are kept, and generalised by
+        the covariance of a discrepancy.
         """
         if not self.whitened:
             return self.kind.solve(self.problem, initial, free)
         if discrepancy is None:
-            return fit_windows(self.problem, initial, free, most_steps, pull, slopes)
-        root = discrepancy.whitener
-        white = None if slopes is None else root.whiten(slopes)
+            return fit_windows(self.problem, initial, free, most_steps, pull, nearby, kept)
+        root, white = discrepancy.whitener, {}
+        if nearby:
+            columns = root.whiten(np.column_stack(list(nearby.values())))
+            white = dict(zip(nearby, columns.T, strict=True))
         problem = Whitened(self.problem, root)
-        found = fit_windows(problem, initial, free, most_steps, pull, white)
+        found = fit_windows(problem, initial, free, most_steps, pull, white, kept)
         return replace(
             found, residual=root.colour(found.residual), jacobian=root.colour(found.jacobian)
         )

@@ -151,11 +151,10 @@ def _fitted(
             if best is None or left < best[0]:
                 best = (left, start)
     start = current.params if best is None else best[1]
-    slopes = dict(zip(current.hypothesis.free, current.fit.jacobian.T, strict=True))
-    if set(hypothesis.free) - set(slopes) == {name}:
+    slopes = current.slopes
+    if name not in slopes:
         slopes[name] = raw_columns(current, data.identify, [effect])[:, 0]
-    known = slopes if set(hypothesis.free) <= set(slopes) else None
-    return fit(hypothesis, data.identify, start, most_steps, known, allowed)
+    return fit(hypothesis, data.identify, start, most_steps, slopes, allowed, roughly=True)
 
 
 # ---- all rounds ------------------------------------------------------------------------------------
@@ -231,9 +230,14 @@ def _forget(trials: Sequence[Trial], current: Fitted, data: Data) -> None:
 
 def _converged(fitted: Fitted, data: Data) -> Fitted:
     """A candidate's fit, carried on to its end."""
-    slopes = dict(zip(fitted.hypothesis.free, fitted.fit.jacobian.T, strict=True))
     allowed = data.allowed(data.identify)
-    return fit(fitted.hypothesis, data.identify, fitted.params, slopes=slopes, discrepancy=allowed)
+    return fit(
+        fitted.hypothesis,
+        data.identify,
+        fitted.params,
+        nearby=fitted.slopes,
+        discrepancy=allowed,
+    )
 
 
 def _implausible(found: Sequence[list[Trial]], final: Fitted, data: Data) -> list[Trial] | None:
