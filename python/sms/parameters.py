@@ -77,7 +77,7 @@ def is_of_leg(name: str) -> bool:
 def _of_legs() -> Mapping[str, Parameter]:
     """What one leg has more: none, and within bounds in which the leg's own value keeps to those of params.def.
 
-    What is known of a curve or a sensor is known of each leg's own, and of what the legs have in common nothing besides.
+    What is known of a curve or a sensor is known of each leg's own, and nothing besides of what they have in common.
     """
     common = {n: replace(row, uncertainty=0.0) for n, row in PARAMETERS.items() if n in SPECIMENS}
     more = {

@@ -40,8 +40,8 @@ MOST_INFLATED = 10.0
 scatter is hardly known itself. Judgement."""
 CURVES = (*MAPS, *LINEARITY)
 WIDE = 3.0
-"""Half widths that a curve may be off somewhere: what is declared of a map or a sensor's line is that of most of it, and
-a bow is not the form of every such error."""
+"""Half widths that a curve may be off somewhere: what is declared of a map or a sensor's line is that of most of it,
+and a bow is not the form of every such error."""
 
 
 @dataclass(frozen=True)
