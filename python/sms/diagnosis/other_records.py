@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, fit, lean, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, fit, lean, residual_of, without_sensitivities
 from sms.estimation.discrepancy import Discrepancy
 from sms.estimation.least_squares import WindowFit, changed
 from sms.estimation.windows import Runs
@@ -29,14 +29,27 @@ def unseen(fitted: Fitted, data: Data) -> Array:
 
 
 def refitted(fitted: Fitted, data: Data) -> Fitted:
-    """The model on the validate records, its causes held."""
+    """The model on the validate records, its causes held. Only the first one, from which all others begin, keeps its
+    sensitivities: a round compares dozens of models.
+    """
     if id(fitted) not in data.refitted_of:
         before = next((at for _, at in data.refitted_of.values()), None)
+        at = refitted_on(fitted, data.validate, before, data.allowed(data.validate))
         data.refitted_of[id(fitted)] = (
             fitted,
-            lean(refitted_on(fitted, data.validate, before, data.allowed(data.validate))),
+            lean(at) if before is None else without_sensitivities(at),
         )
     return data.refitted_of[id(fitted)][1]
+
+
+def refitted_with_slopes(fitted: Fitted, data: Data) -> Fitted:
+    """The same with all sensitivities, worked out there."""
+    at = refitted(fitted, data)
+    names = list(at.hypothesis.free)
+    residual, jacobian = data.validate.problem.evaluate(at.params, names)
+    if not isinstance(at.fit, WindowFit):
+        return at
+    return replace(at, fit=replace(at.fit, residual=residual, jacobian=jacobian), columns={})
 
 
 def looked_at_again(fitted: Fitted, data: Data) -> Fitted:

@@ -23,7 +23,7 @@ from sms.diagnosis.adequacy.subset_estimates import (
 )
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted
-from sms.diagnosis.other_records import refitted
+from sms.diagnosis.other_records import refitted_with_slopes
 from sms.diagnosis.thresholds import APART, APART_BY, LEAST_PLAY, PLAY
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
@@ -44,7 +44,7 @@ def hysteresis(fitted: Fitted, effect: Effect, data: Data) -> Hysteresis | None:
     """The play that takes a cause's size, by ten standard errors and a fifth of it; None where there is none that is
     practically significant, or where the cause grows beside it."""
     gram, rows = np.zeros((3, 3)), 0
-    for runs, at in ((data.identify, fitted), (data.validate, refitted(fitted, data))):
+    for runs, at in ((data.identify, fitted), (data.validate, refitted_with_slopes(fitted, data))):
         played = _sensitivity(runs, at, effect)
         if played is None:
             return None

@@ -32,7 +32,7 @@ from sms.diagnosis.adequacy.subset_estimates import (
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.localisation.activity import Activity, activity, own_signals
-from sms.diagnosis.other_records import refitted
+from sms.diagnosis.other_records import refitted_with_slopes
 from sms.diagnosis.thresholds import APART_BY, LEAST_SHARE
 from sms.estimation.windows import Runs
 
@@ -90,7 +90,7 @@ def _by_moments(fitted: Fitted, effect: Effect, data: Data) -> Iterator[Inconsta
     """Moments divided by the signal then."""
     roles = [
         _in_time(data.identify, fitted, effect),
-        _in_time(data.validate, refitted(fitted, data), effect),
+        _in_time(data.validate, refitted_with_slopes(fitted, data), effect),
     ]
     known = [role for role in roles if role is not None]
     if len(known) < len(roles):

@@ -20,7 +20,7 @@ from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, nuisance_of
-from sms.diagnosis.other_records import refitted
+from sms.diagnosis.other_records import refitted_with_slopes
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.thresholds import DIFFERS, DIFFERS_BY, EXPLAINS, TRIED_BY_RECORD
 from sms.estimation.least_squares import changed
@@ -56,7 +56,7 @@ def inconsistency(
     baseline: Fitted, data: Data, effects: Sequence[Effect], floor: Array
 ) -> Inconsistency | None:
     """The effect that each record has with a value of its own; None if there is no such. floor: (channels,)."""
-    parts = [(data.identify, baseline), (data.validate, refitted(baseline, data))]
+    parts = [(data.identify, baseline), (data.validate, refitted_with_slopes(baseline, data))]
     effects = [e for e in effects if e.id in BETWEEN_RUNS]
     if not effects or sum(len(runs.motions) for runs, _ in parts) < 3:
         return None

@@ -14,7 +14,7 @@ from sms.arrays import Array, Index
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import value_of
 from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
-from sms.diagnosis.other_records import refitted
+from sms.diagnosis.other_records import refitted_with_slopes
 from sms.diagnosis.result import ParameterValue
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.estimation.nuisance import Nuisance
@@ -96,7 +96,7 @@ def parts_of(fitted: Fitted, effect: Effect, data: Data) -> list[ByWindow]:
     """A cause window by window, of the records that were fitted and of those that were not."""
     return [
         _by_window(data.identify, fitted, effect, inflation_of(data)),
-        _by_window(data.validate, refitted(fitted, data), effect, inflation_of(data)),
+        _by_window(data.validate, refitted_with_slopes(fitted, data), effect, inflation_of(data)),
     ]
 
 

@@ -103,7 +103,17 @@ def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
         return trial.fitted
     hypothesis = extended(current.hypothesis, trial.effect, data)
     allowed = data.allowed(data.identify)
-    return lean(fit(hypothesis, data.identify, current.params, PAIR_STEPS, discrepancy=allowed))
+    return lean(
+        fit(
+            hypothesis,
+            data.identify,
+            current.params,
+            PAIR_STEPS,
+            current.slopes,
+            allowed,
+            roughly=True,
+        )
+    )
 
 
 def _together(one: Fitted, other: Fitted, data: Data, step: Step | None) -> Fitted:
@@ -122,7 +132,8 @@ def _together(one: Fitted, other: Fitted, data: Data, step: Step | None) -> Fitt
     runs = data.identify
     left = [_of_residual(residual_of(runs, start), data) for start in starts]
     start = starts[int(np.argmin(left))]
-    return lean(fit(hypothesis, runs, start, PAIR_STEPS, discrepancy=data.allowed(runs)))
+    slopes = other.slopes | one.slopes
+    return lean(fit(hypothesis, runs, start, PAIR_STEPS, slopes, data.allowed(runs), roughly=True))
 
 
 def _left_of(fitted: Fitted, data: Data) -> float:

@@ -135,7 +135,10 @@ def _fitted(
     most_steps = CANDIDATE_STEPS * len(effect.parameters)
     allowed = data.allowed(data.identify)
     if allowed is not None and step.gain > 0.0:
-        return fit(hypothesis, data.identify, step.params, most_steps, discrepancy=allowed)
+        slopes = current.slopes
+        return fit(
+            hypothesis, data.identify, step.params, most_steps, slopes, allowed, roughly=True
+        )
     name = effect.parameters[0]
     step_by_slope = float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
     linear = moved(effect, current.params, step_by_slope, data.rig)
@@ -259,7 +262,13 @@ def _with_these(
         hypothesis = extended(hypothesis, members[0].effect, data)
     for name in hypothesis.free:
         start[name] = final.params[name]
-    return fit(hypothesis, data.identify, start, discrepancy=data.allowed(data.identify))
+    return fit(
+        hypothesis,
+        data.identify,
+        start,
+        nearby=final.slopes,
+        discrepancy=data.allowed(data.identify),
+    )
 
 
 def _without_one(
