@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -109,7 +108,9 @@ class Fitted:
 
     @property
     def slopes(self) -> dict[str, Array]:
-        """Of each free parameter (rows,): how the residual changes with it."""
+        """Of each free parameter (rows,): how the residual changes with it; none of a model that has forgotten them."""
+        if not len(self.fit.jacobian):
+            return {}
         return dict(zip(self.hypothesis.free, self.fit.jacobian.T, strict=True))
 
     def whiten(self, values: Array) -> Array:
@@ -320,20 +321,22 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     return np.asarray(noise * bread * np.outer(inflate, inflate))
 
 
-def lean(fitted: Fitted) -> Fitted:
-    """The same model, its sensitivities in single precision: a round of the search holds dozens of such models."""
-    if not isinstance(fitted.fit, WindowFit):
-        return fitted
-    slopes: Any = fitted.fit.jacobian.astype(np.float32)
-    return replace(fitted, fit=replace(fitted.fit, jacobian=slopes))
-
-
 def without_sensitivities(fitted: Fitted) -> Fitted:
-    """The same model for whoever asks for its values."""
+    """The same model for whoever asks for its values: a round of the search holds dozens of them."""
     if not isinstance(fitted.fit, WindowFit):
         return fitted
     none = np.empty((0, len(fitted.hypothesis.free)))
     return replace(fitted, fit=replace(fitted.fit, jacobian=none), columns={})
+
+
+def with_sensitivities(fitted: Fitted, runs: Runs) -> Fitted:
+    """The same model on its records with all sensitivities, worked out there."""
+    if not isinstance(fitted.fit, WindowFit):
+        return fitted
+    residual, jacobian = runs.problem.evaluate(fitted.params, list(fitted.hypothesis.free))
+    return replace(
+        fitted, fit=replace(fitted.fit, residual=residual, jacobian=jacobian), columns={}
+    )
 
 
 def residual_of(runs: Runs, params: _core.Params) -> Array:

@@ -11,7 +11,14 @@ from dataclasses import replace
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, fit, lean, residual_of, without_sensitivities
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    fit,
+    residual_of,
+    with_sensitivities,
+    without_sensitivities,
+)
 from sms.estimation.discrepancy import Discrepancy
 from sms.estimation.least_squares import WindowFit, changed
 from sms.estimation.windows import Runs
@@ -37,19 +44,14 @@ def refitted(fitted: Fitted, data: Data) -> Fitted:
         at = refitted_on(fitted, data.validate, before, data.allowed(data.validate))
         data.refitted_of[id(fitted)] = (
             fitted,
-            lean(at) if before is None else without_sensitivities(at),
+            at if before is None else without_sensitivities(at),
         )
     return data.refitted_of[id(fitted)][1]
 
 
 def refitted_with_slopes(fitted: Fitted, data: Data) -> Fitted:
     """The same with all sensitivities, worked out there."""
-    at = refitted(fitted, data)
-    names = list(at.hypothesis.free)
-    residual, jacobian = data.validate.problem.evaluate(at.params, names)
-    if not isinstance(at.fit, WindowFit):
-        return at
-    return replace(at, fit=replace(at.fit, residual=residual, jacobian=jacobian), columns={})
+    return with_sensitivities(refitted(fitted, data), data.validate)
 
 
 def looked_at_again(fitted: Fitted, data: Data) -> Fitted:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
+from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, with_sensitivities
 from sms.diagnosis.other_records import refitted
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
 from sms.estimation.nuisance import Nuisance
@@ -35,7 +35,7 @@ def objection(
     runs = data.identify
     least = runs.kind.practically_significant[0] * floor
     parts = _parts(trial.fit.residual - current.fit.residual, runs, least)
-    before, after = predicted(current, parts) ** 2, predicted(trial, parts) ** 2
+    before, after = (predicted(with_sensitivities(f, runs), parts) ** 2 for f in (current, trial))
     counts = resampled(runs.record, runs.block, rng)
     gain = weighted_ms(before, runs.block, counts) - weighted_ms(after, runs.block, counts)
     worth = before - after

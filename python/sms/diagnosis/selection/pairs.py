@@ -15,7 +15,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, logarithms
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, lean, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step, best_steps, extended
 from sms.diagnosis.selection.judgement import alike, judge
@@ -42,7 +42,7 @@ def try_pairs(
     both: dict[frozenset[int], Fitted] = {}
     for i, j in combinations(range(len(tried)), 2):
         step = beside_first.get(effects[j]) if i == 0 else None
-        both[frozenset((i, j))] = _together(alone[i], alone[j], data, step)
+        both[frozenset((i, j))] = _together(alone[i], alone[j], current, data, step)
     if not both:
         return []
     best, pair = min(both.items(), key=lambda item: _left_of(item[1], data))
@@ -103,7 +103,7 @@ def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
         return trial.fitted
     hypothesis = extended(current.hypothesis, trial.effect, data)
     allowed = data.allowed(data.identify)
-    return lean(
+    return without_sensitivities(
         fit(
             hypothesis,
             data.identify,
@@ -116,8 +116,9 @@ def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
     )
 
 
-def _together(one: Fitted, other: Fitted, data: Data, step: Step | None) -> Fitted:
-    """Both effects fitted, from the best of what each alone begins with, and of a step of the other beside the one."""
+def _together(one: Fitted, other: Fitted, current: Fitted, data: Data, step: Step | None) -> Fitted:
+    """Both effects fitted on top of a model, from the best of what each alone begins with, and of a step of the other
+    beside the one."""
     effect = other.hypothesis.causes[-1]
     hypothesis = extended(one.hypothesis, effect, data)
     mine, its = (list(f.hypothesis.causes[-1].parameters) for f in (one, other))
@@ -132,8 +133,10 @@ def _together(one: Fitted, other: Fitted, data: Data, step: Step | None) -> Fitt
     runs = data.identify
     left = [_of_residual(residual_of(runs, start), data) for start in starts]
     start = starts[int(np.argmin(left))]
-    slopes = other.slopes | one.slopes
-    return lean(fit(hypothesis, runs, start, PAIR_STEPS, slopes, data.allowed(runs), roughly=True))
+    allowed = data.allowed(runs)
+    return without_sensitivities(
+        fit(hypothesis, runs, start, PAIR_STEPS, current.slopes, allowed, roughly=True)
+    )
 
 
 def _left_of(fitted: Fitted, data: Data) -> float:

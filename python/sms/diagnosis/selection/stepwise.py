@@ -31,7 +31,7 @@ from sms.diagnosis.adequacy.residual_energy import (
     small,
 )
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, lean, residual_of, without_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
 from sms.diagnosis.other_records import looked_at_again, refitted
 from sms.diagnosis.selection.candidates import Trial, moved, room_of, score_effects
 from sms.diagnosis.selection.finite_steps import (
@@ -109,7 +109,7 @@ def _promising(
     chosen |= dict.fromkeys(np.flatnonzero(alike[by_slope[0]]).tolist() if by_slope else ())
 
     def candidate(k: int) -> Fitted:
-        return lean(
+        return without_sensitivities(
             _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
         )
 
