@@ -309,8 +309,7 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
                 found.jacobian[:, moved], found.residual, runs.block
             )
         return covariance
-    white = fitted.whiten(np.column_stack([found.jacobian, found.residual]))
-    jacobian, residual = white[:, :-1], white[:, -1]
+    jacobian, residual = fitted.whiten(found.jacobian), fitted.whiten(found.residual)
     bread = covariance_from(jacobian.T @ jacobian + pull.T @ pull)
     noise = max(float(np.mean(residual**2)), 1e-12) * fitted.hypothesis.inflation
     robust = covariance_of(jacobian, residual, runs.block) if pull.size else bread

@@ -67,19 +67,21 @@ def score_test(
 
 def covariance_of(jacobian: Array, residual: Array, block: Index) -> Array:
     """Covariance (k, k) of least-squares parameters, robust to any correlation within blocks."""
-    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-150)  # its square is a number still
-    j = jacobian / scale
-    bread = np.linalg.pinv(j.T @ j, rcond=1e-12)
-    return np.asarray(
-        bread @ scatter_of_scores(j, residual, block) @ bread / np.outer(scale, scale)
-    )
+    gram = jacobian.T @ jacobian
+    scale = np.maximum(np.sqrt(np.diag(gram)), 1e-150)  # its square is a number still
+    units = np.outer(scale, scale)
+    bread = np.linalg.pinv(gram / units, rcond=1e-12)
+    scatter = scatter_of_scores(jacobian, residual, block) / units
+    return np.asarray(bread @ scatter @ bread / units)
 
 
 def scatter_of_scores(jacobian: Array, residual: Array, block: Index) -> Array:
     """(k, k): covariance of J'r by the scatter of its blocks, corrected for their number."""
     groups = int(block.max()) + 1
-    scores = sum_by(block, jacobian * residual[:, None], groups)
     n, k = jacobian.shape
+    scores = np.empty((groups, k))
+    for column in range(k):  # of all at once the products would take as much memory as the Jacobian
+        scores[:, column] = np.bincount(block, jacobian[:, column] * residual, groups)
     small_sample = groups / max(groups - 1, 1) * (n - 1) / max(n - k, 1)
     return np.asarray(small_sample * scores.T @ scores)
 
