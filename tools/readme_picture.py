@@ -5,6 +5,7 @@ python -m tools.readme_picture        (needs Chromium: apt-get install chromium)
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import subprocess
 import sys
@@ -103,6 +104,7 @@ def html(answer: Diagnosis, case: Case, hidden: Hidden) -> str:
 
 
 def main() -> int:
+    argparse.ArgumentParser(prog="python -m tools.readme_picture", description=__doc__).parse_args()
     browser = shutil.which("chromium") or shutil.which("chromium-browser")
     if browser is None:
         print("readme_picture: no Chromium here; apt-get install chromium", file=sys.stderr)

@@ -66,4 +66,15 @@ def _load_as(name: str, file: Path) -> None:
     setattr(sys.modules["sms"], "_core", module)  # noqa: B010  # as an import does
 
 
-load()
+def _load_or_say() -> None:
+    """For the command `sms` a wrong SMS_AVX2 is a wrong input like any other: one sentence and exit 2."""
+    try:
+        load()
+    except ImportError as wrong:
+        if Path(sys.argv[0]).stem == "sms" and "SMS_AVX2" in str(wrong):
+            print(f"sms: {wrong}", file=sys.stderr)
+            sys.exit(2)
+        raise
+
+
+_load_or_say()

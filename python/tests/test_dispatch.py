@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from sms import _core, _dispatch
@@ -34,6 +35,20 @@ def test_a_word_that_is_no_choice() -> None:
     done = imported_with("maybe")
     assert done.returncode != 0
     assert "SMS_AVX2 is one of AUTO, ON, OFF, not 'maybe'" in done.stderr
+
+
+def test_the_command_says_a_wrong_choice_in_a_sentence(tmp_path: Path) -> None:
+    command = tmp_path / "sms"
+    command.write_text("import sms\n", encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, str(command)],
+        env={**os.environ, "SMS_AVX2": "maybe"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stderr == "sms: SMS_AVX2 is one of AUTO, ON, OFF, not 'maybe'\n"
 
 
 @pytest.mark.skipif(_dispatch.second_copy() is not None, reason="an installation of two copies")

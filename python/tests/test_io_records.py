@@ -186,6 +186,13 @@ def test_a_wrong_column_or_unit_is_said(
         assert word in sentence
 
 
+def test_two_columns_of_one_name_need_a_name_each(tmp_path: Path) -> None:
+    twice = [HEADER[1] if name == HEADER[2] else name for name in HEADER]
+    (tmp_path / "r.csv").write_text(",".join(twice) + "\n" + lines_of(","))
+    sentence = failure(tmp_path, rig_text("r.csv", signals=FOREIGN))
+    assert "2 columns are named 'stroke'; give each a name of its own" in sentence
+
+
 GOOD = ",".join(HEADER) + "\n" + lines_of(",")
 
 

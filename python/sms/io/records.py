@@ -131,10 +131,15 @@ def _find_column(table: Table, wanted: SignalSource, rig: Rig) -> int | None:
     for known in (list(table.names), plain):
         found = [i for i, name in enumerate(known) if name == wanted.column]
         if len(found) > 1:
+            names = [table.names[i] for i in found]
+            remedy = (
+                f"in {rig.path}, [signals] {wanted.signal}, write the one meant with its unit in "
+                f"brackets ({', '.join(names)})"
+                if len(set(names)) == len(names)
+                else "give each a name of its own in the header line"
+            )
             raise InputError(
-                f"{table.file}: {len(found)} columns are named '{wanted.column}'; in "
-                f"{rig.path}, [signals] {wanted.signal}, write the one meant with its unit in "
-                f"brackets ({', '.join(table.names[i] for i in found)})"
+                f"{table.file}: {len(found)} columns are named '{wanted.column}'; {remedy}"
             )
         if found:
             return found[0]
