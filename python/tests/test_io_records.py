@@ -210,7 +210,8 @@ GOOD = ",".join(HEADER) + "\n" + lines_of(",")
     ("r.csv.gz", b"not gzip", "", ["gzip", "copy it again"]),
     ("r.csv.gz", gzip.compress(GOOD.encode(), mtime=0)[:-9], "", ["cut-off gzip"]),
     ("r.mat", b"not MATLAB at all", "", ["not a readable .mat"]),
-    ("r.mat", b"MATLAB 7.3 MAT-file" + b" " * 105 + b"\x00\x02IM" + b"\0" * 400, "", ["save -v7"]),
+    ("r.mat", b"MATLAB 7.3 MAT-file" + b" " * 105 + b"\x00\x02IM" + b"\0" * 400, "",
+     ["not a readable .mat"]),
     ("r.parquet", b"", "", ["r.parquet"]),
     ("r.xlsx", b"PK", "", ["'.xlsx' are not read", ".csv"]),
 ])  # fmt: skip

@@ -1,4 +1,5 @@
-"""Files into tables of numbers: CSV and its relatives (also .gz), MATLAB .mat, Parquet.
+"""Files into tables of numbers: CSV and its relatives (also .gz), Parquet, and by their own modules MATLAB's .mat
+(matlab_files.py), logs of measurement systems (measurement_files.py) and of a bus (can_logs.py).
 
 Nothing is dropped or repaired here: a cell that is not a number becomes NaN and is remembered with
 its line, so that the data check can name it.
@@ -11,16 +12,20 @@ import gzip
 import io
 import re
 import zlib
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import scipy.io
-from numpy.typing import NDArray
 
 from sms.errors import InputError
+from sms.io.matlab_files import read_matlab
+from sms.io.measurement_files import (
+    ENDINGS,
+    holds_frames,
+    measurement_format,
+    read_measurement,
+)
 from sms.io.table import Table, ending_of, is_packed
 
 TEXT_ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")
@@ -37,6 +42,8 @@ _HEADER_WORD = re.compile(r"[^\s\[\]]+(?:\s*\[[^\]]*\])?")
 def is_can_log(file: Path) -> bool:
     """Whether a file holds CAN frames, by its ending and, for text, by its first line; packed (.gz) or not."""
     ending = ending_of(file)
+    if ending == ".mf4":
+        return measurement_format(file) is None or holds_frames(file)
     if ending not in _CAN_OPENINGS:
         return ending in _CAN_ENDINGS
     try:
@@ -52,7 +59,7 @@ def delimiter_of(file: Path) -> str:
 
     The separator that finds as many cells in the header as in the numbers below it: decimal commas do not.
     """
-    if ending_of(file) not in TEXT_ENDINGS or is_can_log(file):
+    if ending_of(file) not in TEXT_ENDINGS or measurement_format(file) or is_can_log(file):
         return "comma"
     lines = [line for line in _decoded(file).splitlines() if line.strip(" \t,;")]
     looked_at = [line for line in lines if not line.lstrip().startswith("#")][:LOOKED_AT]
@@ -75,15 +82,17 @@ def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Tab
 
         return read_telemetry(file)
     ending = ending_of(file)
+    if ending == ".mat" and not is_packed(file):
+        return read_matlab(file, columns)
+    if (form := measurement_format(file)) is not None:
+        return read_measurement(file, form)
     if ending in TEXT_ENDINGS:
         return _read_text(file, delimiter, columns)
-    if ending == ".mat" and not is_packed(file):
-        return _read_matlab(file, columns)
     if ending == ".parquet":
         return _read_parquet(file)
     raise InputError(
         f"{file}: files with the ending '{ending}' are not read; save it as .csv "
-        f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet; "
+        f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet, {', '.join(ENDINGS)}; "
         "CAN logs .asc, .csv, .log, .trc, each also .gz, .blf, .mf4, .db)"
     )
 
@@ -215,49 +224,6 @@ def _without_trailing_delimiter(cells: pd.DataFrame, expected: int) -> pd.DataFr
     if cells.shape[1] == expected + 1 and bool(cells.iloc[:, -1].isna().all()):
         return cells.iloc[:, :-1]
     return cells
-
-
-def _read_matlab(file: Path, columns: Sequence[str] | None) -> Table:
-    try:
-        variables = scipy.io.loadmat(str(file), squeeze_me=True, struct_as_record=True)
-    except NotImplementedError:
-        raise InputError(f"{file}: MATLAB 7.3 file; save it with  save -v7") from None
-    except Exception as problem:  # scipy answers a broken file with errors of many kinds
-        raise InputError(f"{file}: not a readable .mat file ({problem}); save it again") from None
-    arrays: dict[str, NDArray[np.generic]] = {}
-    for name, variable in variables.items():
-        if not name.startswith("__"):
-            _collect(name, np.asarray(variable), arrays)
-    if columns is not None:
-        fitting = [a for a in arrays.values() if a.ndim == 2 and a.shape[1] == len(columns)]
-        if len(fitting) != 1:
-            raise InputError(
-                f"{file}: {len(fitting)} matrices with {len(columns)} columns, one is needed for "
-                "the names in [data] columns"
-            )
-        arrays = {name: fitting[0][:, i] for i, name in enumerate(columns)}
-    return _table_of({name: a for name, a in arrays.items() if a.ndim == 1}, file)
-
-
-def _collect(name: str, value: NDArray[np.generic], into: dict[str, NDArray[np.generic]]) -> None:
-    """Numeric arrays of a .mat variable; a field of a structure is named "log.time"."""
-    if value.dtype.names is not None and value.ndim == 0:
-        for field, content in zip(value.dtype.names, value.item(), strict=True):
-            _collect(f"{name}.{field}", np.asarray(content), into)
-    elif value.dtype.kind in "fiu" and value.ndim in (1, 2):
-        into[name] = value
-
-
-def _table_of(arrays: dict[str, NDArray[np.generic]], file: Path) -> Table:
-    """A table of the vectors that have the most common length (of equals, the largest)."""
-    if not arrays:
-        raise InputError(f"{file}: there is no vector of numbers in it; save each signal as one")
-    counts = Counter(array.size for array in arrays.values())
-    length = max(counts, key=lambda size: (counts[size], size))
-    kept = {name: array for name, array in arrays.items() if array.size == length}
-    others = {name: array.size for name, array in arrays.items() if array.size != length}
-    cells = pd.DataFrame({i: array for i, array in enumerate(kept.values())})
-    return Table(file, tuple(kept), cells, np.arange(1, length + 1), others)
 
 
 def _read_parquet(file: Path) -> Table:
