@@ -288,7 +288,7 @@ def test_columns_name_signals(dbc: Path) -> None:
     ("more", "column", "said"),
     [
         ("BO_ 769 Other: 8 BENCH\n SG_ second : 0|8@1+ (1,0) [0|0] \"N\" LOGGER\n", "Other.second",
-         "several messages of the name 'Other' (identifiers 0x300, 0x301)"),
+         "write one of 0x300.second, 0x301.second"),
         (" SG_ first m1 : 24|8@1+ (1,0) [0|0] \"N\" LOGGER\n", "first",
          "message 'Other' of the DBC has 2 signals of the name 'first'"),
         ("", "temperature", "write one of Air.temperature, Other.temperature"),
@@ -301,7 +301,6 @@ def test_a_name_that_several_signals_have_is_told_apart_or_asked_to_be_changed(
     with pytest.raises(InputError) as refused:
         find_channel(load_dbc(dbc), column)
     assert said in str(refused.value)
-    assert "write one of" not in str(refused.value) or not more
 
 
 def test_random_logs_decode_as_frame_by_frame(tmp_path: Path, dbc: Path) -> None:

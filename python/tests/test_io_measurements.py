@@ -14,6 +14,7 @@ from sms.errors import InputError
 from sms.io import matlab_files, measurement_files
 from sms.io.table import Table
 from sms.io.table_files import is_can_log, read_table
+from sms.io.write import write_table
 
 STROKE = np.sin(np.linspace(0.0, 3.0, 101))
 TIME = np.linspace(0.0, 1.0, 101)
@@ -222,6 +223,19 @@ def test_timeseries_in_a_data_set_of_simulink(tmp_path: Path, version: str, even
     logged = opaque({"Elements": elements}, "Simulink.SimulationData.Dataset")
     matio.save_to_mat(str(tmp_path / "r.mat"), {"logsout": logged}, version=version)
     check_two_rates(read(tmp_path / "r.mat"), "stroke [mm]", "pressure [mm]")
+
+
+def test_a_table_written_for_simulink_is_read_as_it_was(tmp_path: Path) -> None:
+    pytest.importorskip("matio")
+    columns = {"time [s]": TIME, "stroke [mm]": STROKE, "gate": np.round(TIME)}
+    write_table(tmp_path / "r.mat", columns)
+    assert [f.name for f in tmp_path.iterdir()] == ["r.mat"]
+    table = read(tmp_path / "r.mat")
+    assert table.names == tuple(columns)
+    for name, values in columns.items():
+        np.testing.assert_array_equal(column(table, name), values)
+    with pytest.raises(InputError, match="needs a column time"):
+        write_table(tmp_path / "s.mat", {"stroke [mm]": STROKE})
 
 
 def test_objects_without_the_package_are_said(

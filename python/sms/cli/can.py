@@ -22,6 +22,7 @@ from sms.cli.can_bus import (
     progress_bar,
     recording,
 )
+from sms.cli.columns import Columns, columns_of
 from sms.errors import InputError
 
 can_app = typer.Typer(
@@ -89,6 +90,7 @@ def drive(
         str, typer.Option(help="Control law: *proportional*, *pid*, *state_feedback*, *unchanged*.")
     ] = "unchanged",
     record: Annotated[Path | None, typer.Option(help="Also record the bus into this log.")] = None,
+    column: Columns = [],  # noqa: B006 (typer copies it)
 ) -> None:
     """Drive the platform along a deck motion, and say how even the stream of set-points was.
 
@@ -98,7 +100,7 @@ def drive(
     from sms.link.drive import drive as stream  # noqa: PLC0415
     from sms.link.motion import check_motion, read_motion  # noqa: PLC0415
 
-    wanted = read_motion(motion).scaled(scale)
+    wanted = read_motion(motion, columns=columns_of(column)).scaled(scale)
     check_motion(wanted)
     with (
         linked(interface, channel, bitrate) as link,

@@ -19,6 +19,7 @@ from sms.cli.can_bus import (
     open_address,
     progress_bar,
 )
+from sms.cli.columns import Dbc
 from sms.errors import InputError
 
 
@@ -99,20 +100,23 @@ def replay(
 
 def table(
     log: Annotated[Path, typer.Argument(help="The log: .blf, .asc, .mf4, .csv, .log, .trc, .db.")],
-    out: Annotated[Path, typer.Option(help="The table to write, .csv or .csv.gz.")] = Path(
-        "run.csv"
-    ),
+    out: Annotated[
+        Path, typer.Option(help="The table to write: .csv, .csv.gz, .parquet or .mat.")
+    ] = Path("run.csv"),
+    dbc: Dbc = None,
 ) -> None:
-    """Turn a log of the rig's bus into a table: one column a signal, named "extension_1 [m]", on one time base.
+    """Turn a log of the rig's bus, or of another one, into a table on one time base.
+
+    One column a signal, named "extension_1 [m]".
 
     Other commands need no table: a rig file names the log itself as a record.
     """
-    from sms.io.table_files import is_can_log, read_table  # noqa: PLC0415
+    from sms.io.table_files import is_can_log, open_table  # noqa: PLC0415
     from sms.io.write import write_table  # noqa: PLC0415
 
     if not is_can_log(log):
         raise InputError(f"{log}: there is no such CAN log; check the path")
-    found = read_table(log, "comma", None)
+    found = open_table(log, dbc=dbc)
     for remark in found.remarks:
         print(
             f"sms: {log}, frame {remark.line}: {remark.message}; {remark.remedy}", file=sys.stderr

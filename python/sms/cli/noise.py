@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from sms.cli.assets import Assets
+from sms.cli.columns import Columns, Dbc, columns_of
 from sms.report.assets import Place
 
 
@@ -21,7 +22,10 @@ def register(app: typer.Typer) -> None:
 
 def noise(
     record: Annotated[
-        Path, typer.Argument(help="A record: CSV (also .gz), .mat or Parquet, a column named time.")
+        Path,
+        typer.Argument(
+            help="A record: a table, a log of a measurement system or of a bus; a column named time."
+        ),
     ],
     signal: Annotated[
         str | None,
@@ -34,6 +38,8 @@ def noise(
     out: Annotated[Path, typer.Option(help="Folder for noise.html and noise.json.")] = Path(
         "noise"
     ),
+    column: Columns = [],  # noqa: B006 (typer copies it)
+    dbc: Dbc = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print noise.json instead.")] = False,
     assets: Assets = Place.inside,
 ) -> None:
@@ -50,7 +56,7 @@ def noise(
     from sms.report.page import write_page  # noqa: PLC0415
 
     check_output_folder(out)
-    name, unit, time, values = stretch(record, signal, begin, end)
+    name, unit, time, values = stretch(record, signal, begin, end, columns_of(column), dbc)
     found = noise_of(time, values, alpha, beta)
     said = noise_sentences(found, unit)
     told = {"record": record.name, "signal": name, "unit": unit} | noise_dict(found)

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sms.cli.assets import Assets
+from sms.cli.columns import Columns, Dbc, columns_of
 from sms.cli.mechanism import AsJson, Settings, bad_input, machine
 from sms.errors import InputError
 from sms.progress import progress_bar
@@ -52,6 +53,8 @@ def compare(
     align: Annotated[
         bool, typer.Option("--align", help="Take off the lag of the first signal before comparing.")
     ] = False,
+    column: Columns = [],  # noqa: B006
+    dbc: Dbc = None,
     out: Annotated[
         Path, typer.Option(help="Folder for comparison.html and comparison.json.")
     ] = Path("comparison"),
@@ -75,7 +78,9 @@ def compare(
         if not equals:
             raise InputError(f"--pair {text}: write MEASURED=SIMULATED, two names of columns")
         renamed[left.strip()] = right.strip()
-    found = compare_files(measured, simulated, signal, input_name, shift, align, renamed)
+    found = compare_files(
+        measured, simulated, signal, input_name, shift, align, renamed, columns_of(column), dbc
+    )
     text = json_text("comparison", found.to_dict(), [measured, simulated])
     files = out / "comparison.html", out / "comparison.json"
     write_page(files[0], comparison_html(found))

@@ -14,7 +14,7 @@ from sms.arrays import Array
 from sms.comparison.metrics import FrequencyResponse, Metrics, compare_signals, frequency_response
 from sms.errors import InputError, did_you_mean
 from sms.io.table import Table
-from sms.io.table_files import read_table
+from sms.io.table_files import open_table
 from sms.io.units import array_to_si, si_unit_of, split_column_name
 
 WARNING = (
@@ -73,6 +73,8 @@ def compare_files(
     shift: float = 0.0,
     align: bool = False,
     renamed: Mapping[str, str] | None = None,
+    columns: Mapping[str, str] | None = None,
+    dbc: Path | None = None,
 ) -> Comparison:
     """Compare the signals that two records share.
 
@@ -84,12 +86,14 @@ def compare_files(
         shift: s added to the simulation's times.
         align: shift the simulation by the lag of the first signal as well.
         renamed: measured name to simulated name, where they differ.
+        columns: signal to column of the measured record, where that calls it otherwise.
+        dbc: definition of the bus of a measured CAN log.
 
     The simulation is interpolated linearly to the measured times, evened out, where both overlap.
     Raises: InputError.
     """
     renamed = dict(renamed or {})
-    one, other = _read(measured), _read(simulated)
+    one, other = _read(measured, columns, dbc), _read(simulated)
     for name, partner in renamed.items():
         if partner not in other:
             raise InputError(f"{simulated}: no column '{partner}'; {did_you_mean(partner, other)}")
@@ -130,11 +134,11 @@ def _compared(
     )
 
 
-def _read(file: Path) -> dict[str, tuple[Array, str]]:
+def _read(
+    file: Path, columns_of_user: Mapping[str, str] | None = None, dbc: Path | None = None
+) -> dict[str, tuple[Array, str]]:
     """Every column of numbers: name without unit, values in SI, SI unit."""
-    if not file.is_file():
-        raise InputError(f"{file}: there is no such file; check the path")
-    table = read_table(file, "comma", None)
+    table = open_table(file, columns_of_user, dbc)
     columns: dict[str, tuple[Array, str]] = {}
     for index, full in enumerate(table.names):
         name, unit = split_column_name(full)

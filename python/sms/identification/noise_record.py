@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -11,15 +12,23 @@ import numpy as np
 from sms.arrays import Array
 from sms.errors import InputError, did_you_mean
 from sms.identification.noise import Noise, Spectrum
-from sms.io.table_files import read_table
+from sms.io.table_files import open_table
 from sms.io.units import array_to_si, split_column_name
 
 
 def stretch(
-    file: Path, signal: str | None, begin: float | None, end: float | None
+    file: Path,
+    signal: str | None,
+    begin: float | None,
+    end: float | None,
+    columns: Mapping[str, str] | None = None,
+    dbc: Path | None = None,
 ) -> tuple[str, str, Array, Array]:
-    """(name, unit, time in s (n,), values (n,)) of a column between two times. InputError."""
-    table = read_table(file, "comma", None)
+    """(name, unit, time in s (n,), values (n,)) of a column between two times; columns and dbc as `open_table`.
+
+    InputError.
+    """
+    table = open_table(file, columns, dbc)
     plain = [split_column_name(name)[0] for name in table.names]
     if "time" not in plain:
         raise InputError(f"{file}: there is no column 'time'; {did_you_mean('time', plain)}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -115,7 +116,8 @@ def lacks_value(signal: Signal, column: Array) -> NDArray[np.bool_]:
 
 
 def find_channel(database: Database, column: str) -> Channel | None:
-    """The signal that a column names: "extension_1", "Extension.extension_1", each also with unit.
+    """The signal that a column names: "extension_1", "Extension.extension_1" or, with the message's identifier,
+    "0x181.extension_1"; each also with unit.
 
     InputError when several messages have a signal of that name; None when none has.
     """
@@ -124,7 +126,7 @@ def find_channel(database: Database, column: str) -> Channel | None:
     found = [
         Channel(wanted, message, signal)
         for message in database.messages
-        if message_name in ("", message.name)
+        if message_name in ("", message.name, f"0x{message.frame_id:X}")
         for signal in message.signals
         if signal.name == signal_name
     ]
@@ -135,16 +137,16 @@ def find_channel(database: Database, column: str) -> Channel | None:
 
 def _ambiguous(column: str, found: Sequence[Channel]) -> str:
     """Which name tells them apart; where none does, what to change in the DBC."""
-    choices = list(dict.fromkeys(f"{c.message.name}.{c.signal.name}" for c in found))
+    called = Counter(c.message.name for c in found)
+    choices = list(
+        dict.fromkeys(
+            f"{c.message.name if called[c.message.name] == 1 else f'0x{c.message.frame_id:X}'}.{c.signal.name}"
+            for c in found
+        )
+    )
     if len(choices) > 1:
         return f"the column '{column}' is in several messages; write one of {', '.join(choices)}"
-    message, _, signal = choices[0].partition(".")
-    identifiers = list(dict.fromkeys(f"0x{c.message.frame_id:X}" for c in found))
-    if len(identifiers) > 1:
-        return (
-            f"the column '{column}' is in several messages of the name '{message}' (identifiers "
-            f"{', '.join(identifiers)}), which no column name can tell apart; rename all but one of them in the DBC"
-        )
+    message, signal = found[0].message.name, found[0].signal.name
     return (
         f"the column '{column}': message '{message}' of the DBC has {len(found)} signals of the name '{signal}', which "
         "no column name can tell apart; rename all but one of them in the DBC"
@@ -179,6 +181,8 @@ def collect(
         m.frame_id: _Kept(m) for m in database.messages if any(s.name == CLOCK for s in m.signals)
     }
     signals: dict[int, list[str]] = {}
+    by_group = _by_parameter_group(database)
+    senders: dict[int, set[int]] = {}
     for channel in channels.values():
         kept.setdefault(channel.message.frame_id, _Kept(channel.message))
         signals.setdefault(channel.message.frame_id, []).append(channel.signal.name)
@@ -188,14 +192,25 @@ def collect(
         start = frame.timestamp if start is None else start
         if frame.is_error_frame:
             broken.append(number)
-        elif (into := kept.get(frame.arbitration_id)) is not None and not frame.is_remote_frame:
+            continue
+        identifier = frame.arbitration_id
+        if frame.is_extended_id and by_group and identifier not in kept:
+            identifier = by_group.get(_parameter_group(identifier), identifier)
+        if (into := kept.get(identifier)) is not None and not frame.is_remote_frame:
             into.take(frame.timestamp - start, number, frame.data)
+            if identifier in by_group.values():
+                senders.setdefault(identifier, set()).add(frame.arbitration_id & 0xFF)
     if start is None:
         raise InputError(f"{file}: there is no frame in this log; record it again")
     frames = {number: k.decoded(signals.get(number, ())) for number, k in kept.items()}
     if broken:
         what = f"{len(broken)} error frames stand in the log"
         remarks.append(Remark(broken[0], None, what, "check bit rate, termination and cable"))
+    for identifier, addresses in senders.items():
+        if len(addresses) > 1 and identifier in signals:
+            who = ", ".join(f"0x{a:02X}" for a in sorted(addresses))
+            what = f"'{kept[identifier].message.name}' came from several addresses ({who}), taken for one sender"
+            remarks.append(Remark(None, None, what, "cut the log to the frames of one of them"))
     for k in kept.values():
         if k.unfit:
             what = (
@@ -203,3 +218,22 @@ def collect(
             )
             remarks.append(Remark(min(k.unfit), None, what, "check that it is the DBC of this bus"))
     return frames
+
+
+# ---- J1939 -----------------------------------------------------------------------------------------
+
+
+def _parameter_group(identifier: int) -> int:
+    """Of a 29-bit identifier the parameter group number (SAE J1939-21): without priority and source address, and
+    without the destination where a message is addressed to one."""
+    group = (identifier >> 8) & 0x3FFFF
+    return group if (group >> 8) & 0xFF >= 240 else group & 0x3FF00
+
+
+def _by_parameter_group(database: Database) -> dict[int, int]:
+    """Parameter group -> identifier in the DBC, of its messages of J1939; senders and priorities may be others."""
+    return {
+        _parameter_group(m.frame_id): m.frame_id
+        for m in database.messages
+        if m.is_extended_frame and m.protocol == "j1939"
+    }

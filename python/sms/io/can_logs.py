@@ -82,15 +82,35 @@ def read_telemetry(file: Path) -> Table:
     A name that a command has, too, is written with its message: "Setpoint.extension_setpoint_1".
     """
     database = load_dbc()
-    names = Counter(signal.name for message in database.messages for signal in message.signals)
-    wanted = [
-        signal.name if names[signal.name] == 1 else f"{message.name}.{signal.name}"
-        for message in database.messages
-        if TELEMETRY in message.senders and message.cycle_time
-        for signal in message.signals
-        if signal.unit and signal.name != CLOCK
-    ]
-    return read_can_log(file, database, dict.fromkeys(wanted, True))
+    sent = [m for m in database.messages if TELEMETRY in m.senders and m.cycle_time]
+    return read_can_log(file, database, dict.fromkeys(_columns_of(database, sent), True))
+
+
+def read_bus(file: Path, dbc: Path) -> Table:
+    """All physical signals of a log of another bus; those that never came are left out."""
+    database = load_dbc(dbc)
+    return read_can_log(
+        file, database, dict.fromkeys(_columns_of(database, database.messages), True)
+    )
+
+
+def _columns_of(database: Database, messages: Sequence[Message]) -> list[str]:
+    """Each physical signal by the shortest name that no other has: alone, with its message, or with its identifier."""
+    every = [(m, s.name) for m in database.messages for s in m.signals]
+    alone = Counter(name for _, name in every)
+    with_message = Counter(f"{m.name}.{name}" for m, name in every)
+    columns = []
+    for message in messages:
+        for signal in message.signals:
+            if not signal.unit or signal.name == CLOCK:
+                continue
+            name = f"{message.name}.{signal.name}"
+            if alone[signal.name] == 1:
+                name = signal.name
+            elif with_message[name] > 1:
+                name = f"0x{message.frame_id:X}.{signal.name}"
+            columns.append(name)
+    return columns
 
 
 @dataclass(frozen=True)

@@ -121,7 +121,7 @@ def _read_tdms(file: Path, nptdms: Any) -> Table:
         for channel in channels:
             name = f"{channel.group_name}.{channel.name}" if several else channel.name
             name = named(name, str(channel.properties.get("unit_string", "")))
-            if len(channel) > 1 and "wf_increment" in channel.properties:
+            if len(channel) > 1 and {"wf_increment", "wf_start_offset"} <= set(channel.properties):
                 groups.append(Group(name, np.asarray(channel.time_track()), {name: channel[:]}))
             else:
                 plain[name] = channel[:]

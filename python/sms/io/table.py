@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+
+from sms.errors import InputError, did_you_mean
+from sms.io.units import split_column_name
 
 LARGEST_NUMBER = 1e50
 """A cell beyond it is as little a reading as "inf": no unit makes it one, and its powers overflow."""
@@ -45,6 +48,30 @@ class Table:
         texts = ["" if pd.isna(cells.iloc[i]) else str(cells.iloc[i]).strip() for i in bad]
         values[bad] = np.nan
         return values, [(int(i), text) for i, text in zip(bad, texts, strict=True)]
+
+
+def renamed(table: Table, columns: Mapping[str, str]) -> Table:
+    """The table with other names: signal -> column, "stroke [mm]" or "stroke"; a unit that is said holds.
+
+    InputError for a column that is not there, or a name that two columns would have.
+    """
+    names, plain = list(table.names), [split_column_name(name)[0] for name in table.names]
+    for signal, column in columns.items():
+        wanted, unit = split_column_name(column)
+        if wanted not in plain:
+            raise InputError(
+                f"{table.file}: there is no column '{wanted}' for {signal}; {did_you_mean(wanted, plain)}"
+            )
+        place = plain.index(wanted)
+        unit = unit or split_column_name(table.names[place])[1]
+        names[place] = signal if unit is None else f"{signal} [{unit}]"
+    now = [split_column_name(name)[0] for name in names]
+    for signal in columns:
+        if now.count(signal) > 1:
+            raise InputError(
+                f"{table.file}: there is a column '{signal}' already; rename it too, or leave --column {signal} out"
+            )
+    return replace(table, names=tuple(names))
 
 
 def is_packed(file: Path) -> bool:

@@ -12,7 +12,7 @@ import gzip
 import io
 import re
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +26,7 @@ from sms.io.measurement_files import (
     measurement_format,
     read_measurement,
 )
-from sms.io.table import Table, ending_of, is_packed
+from sms.io.table import Table, ending_of, is_packed, renamed
 
 TEXT_ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")
 _CAN_ENDINGS = (".blf", ".mf4", ".trc", ".db")
@@ -95,6 +95,30 @@ def read_table(file: Path, delimiter: str, columns: Sequence[str] | None) -> Tab
         f"(readable: {', '.join(TEXT_ENDINGS)}, each also .gz, .mat, .parquet, {', '.join(ENDINGS)}; "
         "CAN logs .asc, .csv, .log, .trc, each also .gz, .blf, .mf4, .db)"
     )
+
+
+def open_table(
+    file: Path,
+    columns: Mapping[str, str] | None = None,
+    dbc: Path | None = None,
+    delimiter: str = "comma",
+) -> Table:
+    """A record as the commands take it: columns that are called otherwise (signal -> column), and the definition of
+    the bus whose frames a CAN log holds; None: the project's own. InputError for a DBC without such a log.
+    """
+    if not file.is_file():
+        raise InputError(f"{file}: there is no such file; check the path")
+    if dbc is not None:
+        if not is_can_log(file):
+            raise InputError(
+                f"{file}: --dbc is for logs of CAN frames, and this is none; leave it out"
+            )
+        from sms.io.can_logs import read_bus  # noqa: PLC0415 (python-can takes its time)
+
+        table = read_bus(file, dbc)
+    else:
+        table = read_table(file, delimiter, None)
+    return renamed(table, columns or {})
 
 
 LARGEST_TEXT = 128 * 2**20

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import gzip
+import importlib
 import io
 import os
 import secrets
+import tempfile
+import warnings
 from collections.abc import Mapping, MutableMapping
 from pathlib import Path
 from typing import Any
@@ -21,7 +24,7 @@ from sms.io.data_files import files_in
 from sms.io.rig import Declaration, check_bounds, interpret
 from sms.io.schema import parse_rig_text, read_rig_text
 from sms.io.signals import column_name
-from sms.io.units import from_si, interval_from_si, split_quantity
+from sms.io.units import from_si, interval_from_si, split_column_name, split_quantity
 from sms.parameters import Parameter
 
 
@@ -66,7 +69,10 @@ def write_text_atomically(path: Path, text: str) -> None:
 
 
 def write_table(path: Path, columns: Mapping[str, ArrayLike]) -> None:
-    """Write columns (samples,) named "name [unit]" as CSV; gzip when the name ends with .gz."""
+    """Write columns (samples,) named "name [unit]": .mat, .parquet, else CSV; gzip when the name ends with .gz."""
+    if path.suffix in (".mat", ".parquet"):
+        (write_matlab if path.suffix == ".mat" else write_parquet)(path, columns)
+        return
     text = pd.DataFrame({name: np.asarray(c) for name, c in columns.items()}).to_csv(index=False)
     content = text.encode("utf-8")
     if path.suffix == ".gz":
@@ -80,6 +86,34 @@ def write_parquet(path: Path, columns: Mapping[str, ArrayLike]) -> None:
     frame = pd.DataFrame({name: np.asarray(c) for name, c in columns.items()})
     frame.to_parquet(buffer, index=False)
     write_bytes_atomically(path, buffer.getvalue())
+
+
+def write_matlab(path: Path, columns: Mapping[str, ArrayLike]) -> None:
+    """The same as MATLAB 7.3: `run`, a structure with time, as Simulink's From Workspace block takes it and as
+    `matlab_files.py` reads it. InputError without the extra sms[logs], or a column of times."""
+    arrays = {name: np.asarray(c, dtype=np.float64)[:, None] for name, c in columns.items()}
+    time = next((n for n in arrays if split_column_name(n)[0] == "time"), None)
+    if time is None:
+        raise InputError(f"{path}: a structure with time needs a column time; write .csv")
+    signals = np.zeros(
+        (1, len(arrays) - 1), dtype=[("values", "O"), ("label", "O"), ("dimensions", "O")]
+    )
+    for k, name in enumerate(n for n in arrays if n != time):
+        signals[0, k] = arrays[name], np.array([name]), np.array([[1.0]])
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            matio = importlib.import_module("matio")
+    except ImportError:
+        raise InputError(
+            f'{path}: MATLAB files need one more package; pip install "sms[logs]", or write .csv'
+        ) from None
+    with tempfile.TemporaryDirectory() as folder:
+        there = Path(folder) / "run.mat"
+        matio.save_to_mat(
+            str(there), {"run": {"time": arrays[time], "signals": signals}}, version="v7.3"
+        )
+        write_bytes_atomically(path, there.read_bytes())
 
 
 def write_record(path: Path, signals: Mapping[str, ArrayLike]) -> None:

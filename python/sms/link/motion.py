@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from sms import OutOfWorkspaceError, Params, inverse_kinematics
 from sms.arrays import Array
 from sms.errors import InputError, did_you_mean
 from sms.io.table import Table
-from sms.io.table_files import read_table
+from sms.io.table_files import open_table
 from sms.io.units import array_to_si, split_column_name
 
 MID_HEIGHT = 0.5  #: m; the platform's height at mid-stroke, where a heave of zero is
@@ -54,30 +55,32 @@ class PlatformMotion:
         )
 
 
-def read_motion(file: Path, delimiter: str = "comma") -> PlatformMotion:
+def read_motion(
+    file: Path, delimiter: str = "comma", columns: Mapping[str, str] | None = None
+) -> PlatformMotion:
     """Read a motion: columns time, roll, pitch and heave or height, named "roll [deg]".
 
-    Heave is counted upwards from mid-height, 0.5 m. Columns that lack stand still. InputError for
-    a file, a column or a number that cannot be a motion.
+    Heave is counted upwards from mid-height, 0.5 m. Columns that lack stand still. columns: what the file calls
+    otherwise, signal -> column. InputError for a file, a column or a number that cannot be a motion.
     """
-    table = read_table(file, delimiter, None)
-    columns = {name: _column(table, name) for name in _COLUMNS}
-    time = columns["time"]
+    table = open_table(file, columns, delimiter=delimiter)
+    found = {name: _column(table, name) for name in _COLUMNS}
+    time = found["time"]
     if time is None:
         raise InputError(f"{file}: there is no column 'time [s]'; add one")
     if time.size < 2 or not np.all(np.diff(time) > 0.0):
         raise InputError(f"{file}: time must grow from line to line; repair the column")
-    if columns["heave"] is not None and columns["height"] is not None:
+    if found["heave"] is not None and found["height"] is not None:
         raise InputError(f"{file}: there are both heave and height; leave one out")
-    if all(columns[name] is None for name in ("roll", "pitch", "heave", "height")):
+    if all(found[name] is None for name in ("roll", "pitch", "heave", "height")):
         names = [split_column_name(name)[0] for name in table.names]
         remedy = did_you_mean(names[-1], ("roll", "pitch", "heave", "height"))
         raise InputError(f"{file}: no column is a motion; {remedy}")
     still = np.zeros(time.size)
-    heave, height = columns["heave"], columns["height"]
+    heave, height = found["heave"], found["height"]
     if height is None:
         height = MID_HEIGHT + (still if heave is None else heave)
-    roll, pitch = columns["roll"], columns["pitch"]
+    roll, pitch = found["roll"], found["pitch"]
     return PlatformMotion(
         time - time[0],
         still if roll is None else roll,
