@@ -25,6 +25,7 @@ void bind_controller(py::module_& m);
 void bind_plant(py::module_& m);
 void bind_firmware(py::module_& m);
 void bind_virtual_rig(py::module_& m);
+void bind_fmu(py::module_& m);
 #ifdef SMS_WITH_ESTIMATION
 void bind_estimation(py::module_& m);
 void bind_platform_problem(py::module_& m);

@@ -24,6 +24,7 @@ PYBIND11_MODULE(_core, m) {
   sms_python::bind_plant(m);
   sms_python::bind_firmware(m);
   sms_python::bind_virtual_rig(m);
+  sms_python::bind_fmu(m);
 #ifdef SMS_WITH_ESTIMATION
   sms_python::bind_estimation(m);
   sms_python::bind_platform_problem(m);

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Channel', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SignalInfo', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'signal_table', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'uses_avx2', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Channel', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'FmuCalls', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SignalInfo', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'signal_table', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'uses_avx2', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -2613,6 +2613,28 @@ class VirtualRig:
     def time(self) -> float:
         """
         s
+        """
+class FmuCalls:
+    """
+    Functions of an instance of an FMU for model exchange, by their addresses (0: none), and the value references of its states, their rates, inputs and outputs. ValueError for what is none.
+    """
+    def __init__(self, version: typing.SupportsInt | typing.SupportsIndex, instance: typing.SupportsInt | typing.SupportsIndex, set_states: typing.SupportsInt | typing.SupportsIndex, set_values: typing.SupportsInt | typing.SupportsIndex, get_rates: typing.SupportsInt | typing.SupportsIndex, get_values: typing.SupportsInt | typing.SupportsIndex, get_directional: typing.SupportsInt | typing.SupportsIndex, states: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], rates: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], inputs: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], outputs: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> None:
+        ...
+    def rate_slopes(self, x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], u: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, states * states): of each state in turn, the derivatives of all rates.
+        """
+    def rates(self, x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], u: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, states) rates at states (n, states) and inputs (n, inputs); NaN where the FMU does not answer.
+        """
+    def reading_slopes(self, x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], u: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, states * outputs), in the same way.
+        """
+    def readings(self, x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], u: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, outputs), in the same way.
         """
 class CylinderRecord:
     """

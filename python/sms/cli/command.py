@@ -128,6 +128,8 @@ def diagnose(
     data-fault.
     """
     from sms.diagnosis import diagnose as run  # noqa: PLC0415 (scipy takes a second; --help must not)
+    from sms.diagnosis.own import Answer  # noqa: PLC0415
+    from sms.diagnosis.own.fmu_file import is_fmu_rig, write_fmu_diagnosis  # noqa: PLC0415
     from sms.diagnosis.result import as_json as diagnosis_json  # noqa: PLC0415
     from sms.io.measured import parse_measured  # noqa: PLC0415
     from sms.io.write import check_output_folder  # noqa: PLC0415
@@ -142,6 +144,10 @@ def diagnose(
     if machine is not None and history_file is None:
         raise InputError("--machine: it is said of a history; name that with --history")
     if history_file is not None:
+        if is_fmu_rig(rig):
+            raise InputError(
+                f"{rig}: a history is kept of rigs of this project, not of FMUs; leave --history out"
+            )
         history.check_history(history_file, rig, machine)
     columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
@@ -155,7 +161,11 @@ def diagnose(
         if stated is not None:
             answer = replace(answer, measured=stated, measured_from="stated")
         progress.update(task, description="writing the report", completed=0.95)
-        files = write_diagnosis(answer, rig, out)
+        files = (
+            write_fmu_diagnosis(answer, rig, out)
+            if isinstance(answer, Answer)
+            else write_diagnosis(answer, rig, out)
+        )
     added = ""
     if history_file is not None:
         added = history.add_diagnosis(history_file, answer, out / "diagnosis.json", machine)

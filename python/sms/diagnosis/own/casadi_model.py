@@ -61,6 +61,8 @@ class Equations:
     _output: Any
     _step: Any
     _mapped: dict[tuple[str, int], Any] = field(default_factory=dict)
+    by_state: bool = True
+    by_parameters: bool = True
 
     @property
     def adaptive(self) -> bool:

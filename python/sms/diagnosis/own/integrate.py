@@ -10,6 +10,7 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.own.delayed import Delayed
 from sms.diagnosis.own.model import Equation, Model, Values
+from sms.diagnosis.own.steps import runge_kutta
 
 Push = Callable[[float], Array]
 """Of the time in samples since the window began to what is added to the derivative (states, n)."""
@@ -65,17 +66,13 @@ def _run(
             if k + 1 == samples:
                 break
             for i in range(inner):
-                t, middle, end = (i + part for part in (0.0, 0.5, 1.0))
                 first, half, last = felt.during(k, i)
                 if exact is not None:
-                    ends = [none if push is None else push(k + place / inner) for place in (t, end)]
+                    ends = [none if push is None else push(k + at / inner) for at in (i, i + 1)]
                     x = exact.advance(numbers, x, (first, last), (ends[0], ends[1]), h)
                     continue
-                k1 = rate(k + t / inner, x, first)
-                k2 = rate(k + middle / inner, x + 0.5 * h * k1, half)
-                k3 = rate(k + middle / inner, x + 0.5 * h * k2, half)
-                k4 = rate(k + end / inner, x + h * k3, last)
-                x = x + (h / 6.0) * (k1 + 2.0 * (k2 + k3) + k4)
+                inputs = {0.0: first, 0.5: half, 1.0: last}
+                x = runge_kutta(lambda part, x: rate(k + (i + part) / inner, x, inputs[part]), x, h)  # noqa: B023
                 if model.jump is not None:
                     x = _rows(model.jump, values, x, last, len(model.states))
     return out

@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.arrays import Array
-from sms.diagnosis.own.casadi_model import Equations, equations_of
+from sms.diagnosis.own.casadi_model import equations_of
+from sms.diagnosis.own.steps import Steps
 from sms.errors import InputError, did_you_mean
 
 Numbers = float | NDArray[np.float64]
@@ -150,8 +151,8 @@ class Model:
     jump: Equation | None = None
     """What happens at once: of (parameters, state, input) to the state thereafter, asked after every step of the
     integration (np.where: a level at the rim stays there, an integrator is reset)."""
-    exact: Equations | None = field(default=None, repr=False)
-    """Of a model from CasADi: both functions with their derivatives, and the step of the integration."""
+    exact: Steps | None = field(default=None, repr=False)
+    """Of a model from CasADi or an FMU: both functions, the step of the integration, and what derivatives it has."""
 
     @classmethod
     def from_casadi(
@@ -260,8 +261,8 @@ class Model:
             or self.output != self.exact.output
         ):
             raise InputError(
-                f"{self.title}: a model from CasADi has no jump and no other derivative or output than its own; make "
-                "it anew by from_casadi, or write it with numpy"
+                f"{self.title}: a model from CasADi or an FMU has no jump and no other derivative or output than its "
+                "own; make it anew, or write it with numpy"
             )
 
     def _check_equations(self) -> None:

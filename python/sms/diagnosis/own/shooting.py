@@ -124,7 +124,8 @@ class ShootingProblem:
         if names:
             self._start = shot.start
         late = {i.delay for i in self.model.inputs}
-        exact = [n for n in names if n not in late] if self.model.exact is not None else []
+        plant = self.model.exact
+        exact = [n for n in names if n not in late] if plant and plant.by_parameters else []
         if exact:
             for name, slope in zip(
                 exact, self._exact_slopes(params, shot.start, exact), strict=True
@@ -272,7 +273,7 @@ class ShootingProblem:
     def _by_start(self, params: Values, start: Array) -> tuple[Array, Array]:
         """Errors (samples, outputs, windows), and (windows, samples * outputs, states) by state over its scale."""
         states = len(self._scale)
-        if self.model.exact is not None:
+        if self.model.exact is not None and self.model.exact.by_state:
             there = self._with_slopes(params, start, by_parameters=False)
             error = np.where(self._used, (there.out - self._measured) / self._noise, 0.0)
             scaled = there.by_start * self._scale[:, None] / self._noise[:, None]

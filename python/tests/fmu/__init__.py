@@ -1,0 +1,1 @@
+"""FMUs for tests, compiled from C by the compiler of this machine."""
