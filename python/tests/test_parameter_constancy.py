@@ -13,9 +13,15 @@ from sms.arrays import Array
 from sms.diagnosis.adequacy.hysteresis import after_play, hysteresis
 from sms.diagnosis.adequacy.parameter_constancy import Sizes, inconstancy
 from sms.diagnosis.adequacy.residual_energy import Left
-from sms.diagnosis.adequacy.subset_estimates import column_of, linear
+from sms.diagnosis.adequacy.subset_estimates import column_of, linear, record_by_record
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    baseline_hypothesis,
+    fit,
+    without_sensitivities,
+)
 from sms.diagnosis.localisation.activity import activity, own_signals
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data
@@ -197,3 +203,15 @@ def test_records_of_a_spool_that_sticks_are_unknown_and_do_not_contradict_each_o
     assert case.verdict == "unknown"
     assert case.inconsistency is None
     assert case.inconstancy is not None
+
+
+def test_a_model_that_has_forgotten_its_sensitivities_gives_the_same_sizes(tmp_path: Path) -> None:
+    leak = "fitting_leakage of lower"
+    data, fitted = fitted_to(tmp_path, "tank", "fitting_leakage", 3, leak)
+    effect = fitted.hypothesis.causes[0]
+    forgotten = without_sensitivities(fitted)
+    assert forgotten.slopes == {}
+    sizes, again = (record_by_record(f, effect, data) for f in (fitted, forgotten))
+    assert list(sizes) == list(again)
+    for record, size in sizes.items():
+        np.testing.assert_allclose(again[record], size, rtol=1e-3)

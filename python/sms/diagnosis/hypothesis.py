@@ -329,8 +329,8 @@ def without_sensitivities(fitted: Fitted) -> Fitted:
 
 
 def with_sensitivities(fitted: Fitted, runs: Runs) -> Fitted:
-    """The same model on its records with all sensitivities, worked out there."""
-    if not isinstance(fitted.fit, WindowFit):
+    """The same model on its records with all sensitivities, worked out there if it has forgotten them."""
+    if not isinstance(fitted.fit, WindowFit) or len(fitted.fit.jacobian):
         return fitted
     residual, jacobian = runs.problem.evaluate(fitted.params, list(fitted.hypothesis.free))
     return replace(

@@ -51,7 +51,8 @@ def refitted(fitted: Fitted, data: Data) -> Fitted:
 
 def refitted_with_slopes(fitted: Fitted, data: Data) -> Fitted:
     """The same with all sensitivities, worked out there."""
-    return with_sensitivities(refitted(fitted, data), data.validate)
+    forgotten = without_sensitivities(refitted(fitted, data))  # those of others may have served it
+    return with_sensitivities(forgotten, data.validate)
 
 
 def looked_at_again(fitted: Fitted, data: Data) -> Fitted:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sms.arrays import Array, Index
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import value_of
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
+from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, with_sensitivities
 from sms.diagnosis.other_records import refitted_with_slopes
 from sms.diagnosis.result import ParameterValue
 from sms.diagnosis.selection.identifiability import raw_columns
@@ -95,7 +95,9 @@ def record_by_record(fitted: Fitted, effect: Effect, data: Data) -> dict[str, Es
 def parts_of(fitted: Fitted, effect: Effect, data: Data) -> list[ByWindow]:
     """A cause window by window, of the records that were fitted and of those that were not."""
     return [
-        _by_window(data.identify, fitted, effect, inflation_of(data)),
+        _by_window(
+            data.identify, with_sensitivities(fitted, data.identify), effect, inflation_of(data)
+        ),
         _by_window(data.validate, refitted_with_slopes(fitted, data), effect, inflation_of(data)),
     ]
 
