@@ -199,6 +199,20 @@ def test_every_kind_of_fmu_gives_the_verdicts_of_the_native_plant(
 
 
 @pytest.mark.parametrize("version", [2, 3])
+def test_steps_of_its_own_that_are_longer_than_a_sample_are_said(
+    tmp_path: Path, version: int
+) -> None:
+    fmu = Fmu(tanks_fmu(tmp_path, version, internal=0.5), "co_simulation")
+    x, u, none = np.full((2, 1), 0.05), np.ones((1, 1)), np.zeros((2, 1))
+    slave = Slave(fmu, NAMES, tuple(PARAMETERS))
+    numbers = slave.numbers(tanks.MODEL.values(), 1)
+    assert np.all(slave.advance(numbers, x, (u, u), (none, none), np.full(1, 0.5)) != x)
+    slave = Slave(fmu, NAMES, tuple(PARAMETERS))
+    with pytest.raises(InputError, match=r"moves in steps of 0\.5 s, and the samples are 0\.1 s"):
+        slave.advance(numbers, x, (u, u), (none, none), np.full(1, 0.1))
+
+
+@pytest.mark.parametrize("version", [2, 3])
 def test_an_fmu_with_events_is_refused(tmp_path: Path, version: int) -> None:
     with pytest.raises(InputError, match="has events, at which its states may jump"):
         Fmu(tanks_fmu(tmp_path, version, events=1))

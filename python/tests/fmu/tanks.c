@@ -23,7 +23,13 @@ enum { H1, H2, DER1, DER2, VOLT, Y1, Y2, GAIN, OUT1, OUT2, BAND, LEAK1, LEAK2, G
 
 typedef struct {
   double v[COUNT];
+  double late; /* s, of time that has passed and not been stepped over */
 } Tanks;
+
+/* s, of the steps in which it moves; 0: of any length. */
+#ifndef INTERNAL
+#define INTERNAL 0.0
+#endif
 
 static const double start[COUNT] = {0.05, 0.05, 0, 0, 0, 0, 0, 3.3e-6, 17.8e-6, 17.8e-6};
 
@@ -88,6 +94,15 @@ static Status get_rates(void* instance, double* rates) {
 /* Heun's step, a hundredth of a second at most. */
 static Status step(void* instance, double length) {
   double* v = ((Tanks*)instance)->v;
+  if (INTERNAL > 0.0) {
+    double* late = &((Tanks*)instance)->late;
+    *late += length;
+    length = INTERNAL * floor(*late / INTERNAL + 1e-9);
+    *late -= length;
+    if (length == 0.0) {
+      return OK;
+    }
+  }
   const int n = (int)ceil(length / 0.01);
   const double h = length / n;
   for (int i = 0; i < n; ++i) {
@@ -108,11 +123,13 @@ static Status step(void* instance, double length) {
 static void* made(void) {
   Tanks* t = malloc(sizeof *t);
   memcpy(t->v, start, sizeof start);
+  t->late = 0.0;
   return t;
 }
 
 static Status begin(void* instance) {
   memcpy(((Tanks*)instance)->v, start, sizeof start);
+  ((Tanks*)instance)->late = 0.0;
   return OK;
 }
 

@@ -155,6 +155,25 @@ class Slave(_ByName):
                     "export the model for model exchange, or make it settable"
                 )
         self._instance = fmu.instance()
+        self._checked = False
+
+    def _check_step(self, values: Array, x: Array, u: Array, h: float) -> None:
+        """InputError for an FMU that moves in longer steps of its own: begun anew at every sample, it would not."""
+        d = self._fmu.description
+        declared = d.defaultExperiment.stepSize if d.defaultExperiment is not None else None
+        own = float(self._fmu.part.fixedInternalStepSize or declared or 0.0)
+        self._checked = True
+        if own <= h * (1.0 + 1e-9):
+            return
+        after = []
+        for length in (h, own):
+            self._begun(values, x, u).doStep(0.0, length)
+            after.append(self._read(self._states))
+        if after[0] == x.tolist() != after[1]:
+            raise InputError(
+                f"{self._fmu.file}: it moves in steps of {own:g} s, and the samples are {h:g} s apart; export it for "
+                "model exchange, or thin the records to its step"
+            )
 
     def _begun(self, values: Array, x: Array, u: Array) -> Any:
         start = dict(zip((*self._states, *self._inputs), (*x.tolist(), *u.tolist()), strict=True))
@@ -171,12 +190,16 @@ class Slave(_ByName):
         for values, which in self._sets(p, x.shape[1]):
             for k in which:
                 try:
+                    if h is not None and not self._checked and h[k] > SHORT:
+                        self._check_step(values, x[:, k], u[:, k], float(h[k]))
                     begun = self._begun(values, x[:, k], u[:, k])
                     if h is None:
                         out[:, k] = self._read(self._outputs)
                     else:
                         begun.doStep(0.0, float(h[k]))
                         out[:, k] = self._read(self._states)
+                except InputError:
+                    raise
                 except Exception:  # a state it cannot go on from: it is made anew
                     self._instance = self._fmu.instance()
         return out
