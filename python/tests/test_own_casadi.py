@@ -142,7 +142,9 @@ def test_what_casadi_cannot_take_is_one_sentence(monkeypatch: pytest.MonkeyPatch
         of_casadi(LAG, lambda p, x, u: [np.ones((2, 2)) @ [x[0], x[0]] + "no"])
 
     model = of_casadi(LAG, lambda p, x, u: [x[0]])
-    with pytest.raises(InputError, match="make it anew by from_casadi"):
+    with pytest.raises(
+        InputError, match="no other derivative or output than its own; make it anew"
+    ):
         replace(model, derivative=LAG.derivative)
 
     def missing(name: str) -> Array:

@@ -69,7 +69,8 @@ def diagnose(
     rig: Annotated[
         Path,
         typer.Argument(
-            help="The rig file (TOML): what was measured, what is known, which records."
+            help="The rig file (TOML): what was measured, what is known, which records; of kind *fmu* with an FMU "
+            "as the plant."
         ),
     ],
     out: Annotated[
@@ -128,7 +129,7 @@ def diagnose(
     data-fault.
     """
     from sms.diagnosis import diagnose as run  # noqa: PLC0415 (scipy takes a second; --help must not)
-    from sms.diagnosis.own import Answer  # noqa: PLC0415
+    from sms.diagnosis.own import Answer, diagnose_fmu  # noqa: PLC0415
     from sms.diagnosis.own.fmu_file import is_fmu_rig, write_fmu_diagnosis  # noqa: PLC0415
     from sms.diagnosis.result import as_json as diagnosis_json  # noqa: PLC0415
     from sms.io.measured import parse_measured  # noqa: PLC0415
@@ -152,7 +153,7 @@ def diagnose(
     columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("reading records", total=1.0)
-        answer = run(
+        answer = (diagnose_fmu if is_fmu_rig(rig) else run)(
             rig,
             seed,
             lambda text, done: progress.update(task, description=text, completed=done),

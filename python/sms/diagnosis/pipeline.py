@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -47,10 +46,6 @@ def diagnose(
     threads()  # what is wrong with it is no fault of a record
     rng = np.random.default_rng(seed)
     progress("reading records", 0.0)
-    from sms.diagnosis.own.fmu_file import diagnose_fmu, is_fmu_rig  # noqa: PLC0415 (pages come with it)
-
-    if is_fmu_rig(Path(path)):
-        return diagnose_fmu(Path(path), seed, progress, empirical)
     rig = load_rig(path)
     if empirical and rig.kind == "cylinder":
         raise InputError(

@@ -293,8 +293,15 @@ def _number(fmu: Fmu, variable: str) -> float:
 # ---- the diagnosis ---------------------------------------------------------------------------------
 
 
-def diagnose_fmu(path: Path, seed: int, progress: Progress, empirical: bool) -> Answer:
-    """As `diagnose` of a rig of this project."""
+def diagnose_fmu(
+    path: str | os.PathLike[str],
+    seed: int = 1,
+    progress: Progress = lambda text, done: None,
+    empirical: bool = False,
+) -> Answer:
+    """As `diagnose` of a rig of this project. InputError for a file, an FMU or a record that cannot be used."""
+    path = Path(path)
+    progress("reading the FMU and its records", 0.0)
     rig = load_fmu_rig(path)
     found = diagnose_model(rig.model, rig.records, rig.window, seed, progress, empirical)
     return replace(found, rig=path.name, inputs=input_hashes(rig.files))
