@@ -1,7 +1,10 @@
 // The rig "platform" held against records, and the parameters of a machine with three legs.
+#include <pybind11/eigen.h>
+
 #include <memory>
 
 #include "estimation/platform_loop.hpp"
+#include "estimation/poses.hpp"
 #include "shooting_problem.hpp"
 
 namespace sms_python {
@@ -121,6 +124,53 @@ void bind_evaluate(Class& problem) {
           "(residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.");
 }
 
+// ---- the mechanism as built ----
+
+std::unique_ptr<est::PoseProblem> make_pose_problem(est::RowMatrix extension, est::RowMatrix pose,
+                                                    Eigen::VectorXd extension_noise, Eigen::VectorXd pose_noise,
+                                                    const LegParams& start) {
+  return std::make_unique<est::PoseProblem>(
+      est::MeasuredPoses{std::move(extension), std::move(pose), std::move(extension_noise), std::move(pose_noise)},
+      start);
+}
+
+est::Calibration calibrate(const est::PoseProblem& problem, const LegParams& start,
+                           const std::vector<std::string>& free, const Eigen::VectorXd& tolerance, double huber,
+                           int max_iterations) {
+  std::vector<int> indices;
+  for (const std::string& name : free) {
+    indices.push_back(leg_param_index(name));
+  }
+  py::gil_scoped_release unlocked;
+  return est::calibrate(problem, start, indices, tolerance, huber, max_iterations);
+}
+
+void bind_poses(py::module_& m) {
+  auto problem =
+      py::class_<est::PoseProblem>(
+          m, "PoseProblem",
+          "Measured poses against the forward kinematics of the extensions read with them, whitened: extension (n, 3) m, "
+          "pose (n, 6) roll, pitch, height, yaw, x, y in rad and m, NaN where it was not measured; noises (3,) and (6,), "
+          "standard deviations.")
+          .def(py::init(&make_pose_problem), py::kw_only(), py::arg("extension"), py::arg("pose"),
+               py::arg("extension_noise"), py::arg("pose_noise"), py::arg("start"))
+          .def("predict", &est::PoseProblem::predict, py::arg("params"),
+               "(n, 6): what the pose sensors should read; NaN where the parameters have no pose.")
+          .def_property_readonly("first_row", &est::PoseProblem::first_row, "Of each pose, and the number of rows.");
+  bind_evaluate<est::PoseProblem>(problem);
+  py::class_<est::Calibration>(m, "Calibration", "The mechanism that comes closest to measured poses.")
+      .def_readonly("params", &est::Calibration::params)
+      .def_readonly("residual", &est::Calibration::residual, "(rows,), whitened, at params")
+      .def_readonly("jacobian", &est::Calibration::jacobian, "(rows, free), whitened, at params")
+      .def_readonly("iterations", &est::Calibration::iterations)
+      .def_readonly("converged", &est::Calibration::converged)
+      .def_readonly("message", &est::Calibration::message);
+  m.def("calibrate", &calibrate, py::arg("problem"), py::arg("start"), py::arg("free"), py::arg("tolerance"),
+        py::arg("huber") = 0.0, py::arg("max_iterations") = 100,
+        "Least squares over the parameters `free`, each held to its start by a standard deviation `tolerance`, by "
+        "Huber's loss on poses beyond `huber` standard deviations; ValueError for a bad start.");
+}
+
 }  // namespace
 
 std::pair<Eigen::VectorXd, est::RowMatrix> evaluate_with_legs(const est::ProblemOf<LegParams>& problem,
@@ -131,6 +181,7 @@ std::pair<Eigen::VectorXd, est::RowMatrix> evaluate_with_legs(const est::Problem
 
 void bind_platform_problem(py::module_& m) {
   bind_leg_params(m);
+  bind_poses(m);
   py::class_<est::PlatformRecord>(m, "PlatformRecord",
                                   "One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.")
       .def(

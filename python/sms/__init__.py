@@ -38,6 +38,7 @@ from sms.kinematics import (
     pose_jacobian,
     six_leg_inverse,
 )
+from sms.parameter_files import load_params
 from sms.simulation import (
     Run,
     SimulationStoppedError,
@@ -80,6 +81,7 @@ __all__ = [
     "inverse_motion",
     "jacobian",
     "linearise",
+    "load_params",
     "mass_matrix",
     "notebook_progress",
     "pose_jacobian",

@@ -14,6 +14,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms import _core
 from sms.cli import (
+    calibrate,
     can,
     demo,
     export,
@@ -184,6 +185,7 @@ def diagnose(
 demo.register(app)
 mechanism.register(app)
 identify.register(app)
+calibrate.register(app)
 limits.register(app)
 simulate.register(app)
 study.register(app)

@@ -1,4 +1,4 @@
-"""The command `sms export fmu`."""
+"""The commands `sms export fmu` and `sms export c-params`."""
 
 from __future__ import annotations
 
@@ -22,6 +22,22 @@ def register(app: typer.Typer) -> None:
 @export_app.callback()
 def _export() -> None:
     """A group, so that `fmu` is named also while it is alone."""
+
+
+@export_app.command(
+    epilog="Example: **sms export c-params geometry/geometry.toml -o as_built.h**, then in C "
+    "sms_params_default(&p); sms_params_as_built(&p);"
+)
+def c_params(
+    file: Annotated[Path, typer.Argument(help="A parameter file, such as geometry.toml.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="The header.")] = Path("sms_params.h"),
+) -> None:
+    """Write the parameters of a file as a C header, which firmware compiles in."""
+    from sms.io.write import write_text_atomically  # noqa: PLC0415
+    from sms.parameter_files import c_header, load_params  # noqa: PLC0415
+
+    write_text_atomically(out, c_header(load_params(file), file.name))
+    print(f"written: {out}")
 
 
 @export_app.command(

@@ -74,7 +74,7 @@ def flow(
     from sms.report.flow import flow_html  # noqa: PLC0415
 
     check_output_folder(out)
-    with _progress("reading records") as update:
+    with progress_bar("reading records") as update:
         loaded, records, findings = load_flow_test(rig)
         heat = loaded.model.chambers
         fits = fit_records(records, loaded.declared, heat, huber, progress=update)
@@ -84,7 +84,7 @@ def flow(
         )
         page = flow_html(result)
     text = json_text("identify_flow", result.to_dict(), loaded.files)
-    files = _write(
+    files = write_files(
         out, {"flow.toml": parameter_file(result), "flow.json": text, "report.html": page}
     )
     if as_json:
@@ -121,7 +121,7 @@ def friction(
     from sms.report.friction import friction_html  # noqa: PLC0415
 
     check_output_folder(out)
-    with _progress("reading records") as update:
+    with progress_bar("reading records") as update:
         result = identify_friction(rig, update)
         page = friction_html(result)
     _deliver(
@@ -165,7 +165,7 @@ def actuator(
     from sms.report.actuator import actuator_html  # noqa: PLC0415
 
     check_output_folder(out)
-    with _progress("reading records") as update:
+    with progress_bar("reading records") as update:
         result = identify_actuator(rig, huber, starts, update)
         page = actuator_html(result)
     _deliver(
@@ -203,7 +203,7 @@ def spool(
     from sms.report.spool import spool_html  # noqa: PLC0415
 
     check_output_folder(out)
-    with _progress("reading records") as update:
+    with progress_bar("reading records") as update:
         result = identify_spool(rig, huber, update)
         page = spool_html(result)
     _deliver(
@@ -222,7 +222,7 @@ def spool(
 
 
 @contextmanager
-def _progress(first: str) -> Iterator[Any]:
+def progress_bar(first: str) -> Iterator[Any]:
     """A bar on the terminal; yields update(text, share done)."""
     columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
     with Progress(*columns, console=Console(file=sys.stderr), transient=True) as progress:
@@ -247,7 +247,7 @@ def _deliver(
     text = json_text(f"identify_{subject}", answer, load_rig(rig).files)
     header = "\n".join([f"Identified by sms identify {subject}.", *sentences])
     write_extended_rig(rig, out / f"{subject}.toml", declarations, header)
-    files = _write(out, {f"{subject}.json": text, "report.html": page})
+    files = write_files(out, {f"{subject}.json": text, "report.html": page})
     if as_json:
         print(text, end="")
         return
@@ -256,7 +256,7 @@ def _deliver(
     print(f"written: {', '.join(str(f) for f in (out / f'{subject}.toml', *files))}")
 
 
-def _write(out: Path, texts: dict[str, str]) -> Sequence[Path]:
+def write_files(out: Path, texts: dict[str, str]) -> Sequence[Path]:
     """Each file whole or not at all."""
     from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
     from sms.report.page import write_page  # noqa: PLC0415

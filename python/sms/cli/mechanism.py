@@ -16,6 +16,7 @@ from sms._core import Params
 from sms.cli.assets import Assets
 from sms.errors import InputError, did_you_mean
 from sms.kinematics import ForwardKinematics, InverseKinematics
+from sms.parameter_files import load_params
 from sms.parameters import PARAMETERS
 from sms.report.assets import Place
 
@@ -28,7 +29,7 @@ Settings = Annotated[
         "--set",
         metavar="NAME=VALUE",
         help="A parameter other than its default, in SI units; may be repeated. "
-        "docs/parameters.md lists them.",
+        "docs/parameters.md lists them. A file (geometry.toml) sets all that its [parameters] hold.",
     ),
 ]
 
@@ -146,10 +147,17 @@ def bad_input() -> Iterator[None]:
         raise InputError(str(problem)) from None
 
 
+def _is_file(setting: str) -> bool:
+    return "=" not in setting and setting.endswith(".toml")
+
+
 def machine(settings: Sequence[str]) -> Params:
-    """The default parameters with each "name=value" set. InputError, OutOfRangeError."""
-    params = Params()
-    for setting in settings:
+    """The default parameters with each "name=value" and each file (.toml) set. InputError, OutOfRangeError."""
+    params: Params = Params()
+    for setting in sorted(settings, key=lambda s: not _is_file(s)):
+        if _is_file(setting):
+            params = load_params(setting)
+            continue
         name, equals, value = (part.strip() for part in setting.partition("="))
         if not equals:
             raise InputError(f"--set {setting}: write NAME=VALUE, for instance payload_mass=280")

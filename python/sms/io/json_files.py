@@ -25,6 +25,7 @@ import numpy as np
 from sms import _core
 
 SCHEMA_VERSIONS: Mapping[str, int] = {
+    "calibration": 1,
     "comparison": 1,
     "demo": 1,
     "diagnosis": 1,

@@ -1,0 +1,1 @@
+"""The mechanism as built: joints, lengths and sensors from measured poses (`sms calibrate geometry`)."""

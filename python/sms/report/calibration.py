@@ -1,0 +1,85 @@
+"""The page of `sms calibrate geometry`: errors before and after, and the interval of every parameter."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sms.arrays import Array
+from sms.calibration.fit import COVERAGE, Calibrated, Found
+from sms.report.markup import esc, section, table
+from sms.report.panels import figure, panel, panels_page, trace, view
+
+_ENLARGED = 10.0
+"""By which factor errors are drawn in the plane of roll and pitch."""
+
+
+def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
+    """The whole page as text."""
+    rig = calibrated.rig
+    measured = rig.fitted.pose
+    number = rig.fitted.row.astype(np.float64)
+    plane = view(
+        "", "roll [deg]",
+        [panel("pitch [deg]", [
+            trace(*np.degrees(measured[:, :2]).T, "poses", "measured", "markers"),
+            trace(*_strokes(measured, calibrated.errors_before), "before", "baseline"),
+            trace(*_strokes(measured, calibrated.errors_after), "after", "extended"),
+        ])],
+    )  # fmt: skip
+    errors = view(
+        "", "pose",
+        [panel(f"{name} [deg]", [
+            trace(number, np.degrees(calibrated.errors_before[:, k]), "before", "baseline", "markers"),
+            trace(number, np.degrees(calibrated.errors_after[:, k]), "after", "extended", "markers"),
+        ]) for k, name in enumerate(("roll", "pitch"))],
+    )  # fmt: skip
+    items = "".join(f"<li>{esc(text)}</li>" for text in said)
+    values = table(
+        "Every parameter, with its interval of 95 %",
+        ("parameter", "nominal", "calibrated", "interval", "said by"),
+        [_row(f) for f in calibrated.found],
+    )
+    combined = table(
+        "Combinations: one tolerance of each moves the readings by so many standard deviations of their noise",
+        ("combination", "standard deviations", "told"),
+        [
+            (esc(c.words), f"{c.information:.3g}", "yes" if c.told else "no")
+            for c in calibrated.combinations
+        ],
+    )
+    body = (
+        f"<h1>{esc(rig.title)}</h1><ul class='said'>{items}</ul>"
+        + figure(
+            "plane",
+            "The poses",
+            [plane],
+            f"Strokes: errors of attitude, {_ENLARGED:g} times enlarged.",
+        )
+        + figure(
+            "errors", "Measured less predicted", [errors], "Of the poses that were fitted.", "low"
+        )
+        + section("parameters", "Parameters", values)
+        + section("combinations", "What the poses tell and what not", combined)
+    )
+    return panels_page(f"Calibration: {rig.title}", body, {"plane": [plane], "errors": [errors]})
+
+
+def _strokes(at: Array, error: Array) -> tuple[Array, Array]:
+    """From each pose along its error, with a gap after each: roll and pitch, deg."""
+    begin, end = at[:, :2], at[:, :2] + _ENLARGED * error[:, :2]
+    path = np.degrees(np.stack([begin, end, np.full_like(begin, np.nan)], axis=1)).reshape(-1, 2)
+    return path[:, 0], path[:, 1]
+
+
+def _row(f: Found) -> tuple[str, ...]:
+    scale, unit = {"m": (1e3, "mm"), "rad": (np.degrees(1.0), "deg")}.get(
+        f.unknown.unit, (100.0, "%")
+    )
+    half = COVERAGE * f.deviation
+    return (
+        esc(f.unknown.name),
+        f"{f.nominal * scale:.3f} {unit}",
+        f"{f.value * scale:.3f} {unit}",
+        f"± {half * scale:.3f} {unit}",
+        "poses" if f.measured else "drawing",
+    )
