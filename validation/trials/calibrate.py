@@ -92,6 +92,7 @@ class Trial:
     """One machine, calibrated."""
 
     within: Array  #: (parameters,) whether the truth is within the interval of 95 %
+    told_within: Array  #: the same of each direction of the parameters of which poses say more than the drawing
     before: float  #: rad, attitude on unseen poses, root mean square
     after: float
     measured: int
@@ -107,8 +108,14 @@ def calibrate_one(machine: Machine) -> Trial:
     seconds = time.perf_counter() - begin
     off = np.array([abs(machine.truth[f.unknown.name] - f.value) / f.deviation for f in c.found])
     before, after = c.kept_aside.attitude
+    _, singular, directions = np.linalg.svd(c.scaled, full_matrices=False)
+    error = np.array(
+        [(machine.truth[f.unknown.name] - f.value) / f.unknown.deviation for f in c.found]
+    )
+    along = np.abs(directions @ error) * np.hypot(singular, 1.0)
     return Trial(
         within=off <= COVERAGE,
+        told_within=along[singular > 1.0] <= COVERAGE,
         before=before,
         after=after,
         measured=sum(f.measured for f in c.found),
@@ -185,6 +192,9 @@ def calibrate(
     share, of_machine = within.mean(), 100.0 * within.mean(axis=1)
     known = f"{np.mean([t.measured for t in trials]):.1f} of {within.shape[1]}"
     table.add_row("truth within 95 % intervals", f"{100 * share:.2f} %", "93 to 97 %")
+    told = np.concatenate([t.told_within for t in trials])
+    table.add_row("in directions that poses tell", f"{100 * told.mean():.2f} %", "")
+    table.add_row("such directions, mean", f"{told.size / count:.1f} of {within.shape[1]}", "")
     table.add_row("of one machine", f"{of_machine.min():.0f} to {of_machine.max():.0f} %", "")
     table.add_row("attitude off on unseen poses, before", f"{before:.4f} deg", "")
     table.add_row("after", f"{after:.4f} deg", "")
