@@ -147,11 +147,12 @@ est::Calibration calibrate(const est::PoseProblem& problem, const LegParams& sta
 
 void bind_poses(py::module_& m) {
   auto problem =
-      py::class_<est::PoseProblem>(
-          m, "PoseProblem",
-          "Measured poses against the forward kinematics of the extensions read with them, whitened: extension (n, 3) m, "
-          "pose (n, 6) roll, pitch, height, yaw, x, y in rad and m, NaN where it was not measured; noises (3,) and (6,), "
-          "standard deviations.")
+      py::class_<est::PoseProblem>(m, "PoseProblem",
+                                   "Measured poses against the forward kinematics of the extensions read with them, "
+                                   "whitened: extension (n, 3) m, "
+                                   "pose (n, 6) roll, pitch, height, yaw, x, y in rad and m, NaN where it was not "
+                                   "measured; noises (3,) and (6,), "
+                                   "standard deviations.")
           .def(py::init(&make_pose_problem), py::kw_only(), py::arg("extension"), py::arg("pose"),
                py::arg("extension_noise"), py::arg("pose_noise"), py::arg("start"))
           .def("predict", &est::PoseProblem::predict, py::arg("params"),

@@ -174,8 +174,7 @@ class OnePose : public ceres::CostFunction {
                                   slopes ? &jacobian : nullptr);
     Eigen::Map<Eigen::VectorXd>(residuals, residual.size()) = residual;
     if (slopes) {
-      Eigen::Map<RowMatrix>(jacobians[0], jacobian.rows(), jacobian.cols()) =
-          jacobian * search_.tolerance.asDiagonal();
+      Eigen::Map<RowMatrix>(jacobians[0], jacobian.rows(), jacobian.cols()) = jacobian * search_.tolerance.asDiagonal();
     }
     return residual.allFinite();
   }

@@ -17,6 +17,7 @@ from typing import Annotated
 
 import numpy as np
 import typer
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
@@ -79,7 +80,9 @@ def _extensions(rng: np.random.Generator, count: int) -> Array:
     return np.array(found)
 
 
-def _read(truth: _core.LegParams, extension: Array, rig: PosesRig, measured: Array) -> Poses:
+def _read(
+    truth: _core.LegParams, extension: Array, rig: PosesRig, measured: NDArray[np.bool_]
+) -> Poses:
     """What exact sensors of that machine read, position sensors `extension`."""
     asked = np.where(measured, 0.0, np.nan) * np.ones((len(extension), 6))
     absent = Poses(extension, asked, np.arange(1, len(extension) + 1))
@@ -91,8 +94,10 @@ def _read(truth: _core.LegParams, extension: Array, rig: PosesRig, measured: Arr
 class Trial:
     """One machine, calibrated."""
 
-    within: Array  #: (parameters,) whether the truth is within the interval of 95 %
-    told_within: Array  #: the same of each direction of the parameters of which poses say more than the drawing
+    within: NDArray[np.bool_]  #: (parameters,) whether the truth is within the interval of 95 %
+    told_within: NDArray[
+        np.bool_
+    ]  #: the same of each direction of the parameters of which poses say more than the drawing
     before: float  #: rad, attitude on unseen poses, root mean square
     after: float
     measured: int

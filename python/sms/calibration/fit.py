@@ -62,7 +62,7 @@ def unknowns(rig: PosesRig) -> list[Unknown]:
     ]
     found += [Unknown(f"sensor_gain_extension:{i}", of["sensor_gain"]) for i in (1, 2, 3)]
     found += [Unknown(f"sensor_offset_extension:{i}", of["extension_zero"]) for i in (1, 2, 3)]
-    measured = np.isfinite(rig.fitted.pose).any(axis=0)
+    measured = np.asarray(np.isfinite(rig.fitted.pose).any(axis=0))
     names = [name for name, is_there in zip(("roll", "pitch"), measured, strict=False) if is_there]
     return found + [Unknown(f"sensor_offset_{name}", of["attitude_zero"]) for name in names]
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from sms.arrays import Array
 from sms.errors import InputError, did_you_mean
@@ -37,12 +38,12 @@ class Poses:
 
     extension: Array
     pose: Array
-    row: Array
+    row: NDArray[np.int64]
 
     def __len__(self) -> int:
         return len(self.extension)
 
-    def taken(self, which: Array) -> Poses:
+    def taken(self, which: NDArray[np.bool_]) -> Poses:
         return Poses(self.extension[which], self.pose[which], self.row[which])
 
 

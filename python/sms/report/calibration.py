@@ -18,12 +18,15 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
     rig = calibrated.rig
     measured = rig.fitted.pose
     number = rig.fitted.row.astype(np.float64)
+    before, after = (
+        _strokes(measured, e) for e in (calibrated.errors_before, calibrated.errors_after)
+    )
     plane = view(
         "", "roll [deg]",
         [panel("pitch [deg]", [
-            trace(*np.degrees(measured[:, :2]).T, "poses", "measured", "markers"),
-            trace(*_strokes(measured, calibrated.errors_before), "before", "baseline"),
-            trace(*_strokes(measured, calibrated.errors_after), "after", "extended"),
+            trace(np.degrees(measured[:, 0]), np.degrees(measured[:, 1]), "poses", "measured", "markers"),
+            trace(before[0], before[1], "before", "baseline"),
+            trace(after[0], after[1], "after", "extended"),
         ])],
     )  # fmt: skip
     errors = view(
