@@ -97,7 +97,7 @@ class Trial:
     within: NDArray[np.bool_]  #: (parameters,) whether the truth is within the interval of 95 %
     told_within: NDArray[
         np.bool_
-    ]  #: the same of each direction of the parameters of which poses say more than the drawing
+    ]  #: the same in directions of which poses say more than the drawing
     before: float  #: rad, attitude on unseen poses, root mean square
     after: float
     measured: int
