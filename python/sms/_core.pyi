@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Channel', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'FmuCalls', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'Problem', 'SignalInfo', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'signal_table', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'uses_avx2', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Calibration', 'Channel', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'FmuCalls', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParameterInfo', 'Params', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'PoseProblem', 'Problem', 'SignalInfo', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'calibrate', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'signal_table', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'uses_avx2', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -2859,6 +2859,54 @@ class LegParams(Params):
         """
         What each leg has, as simulate_platform takes it.
         """
+class PoseProblem:
+    """
+    Measured poses against the forward kinematics of the extensions read with them, whitened: extension (n, 3) m, pose (n, 6) roll, pitch, height, yaw, x, y in rad and m, NaN where it was not measured; noises (3,) and (6,), standard deviations.
+    """
+    def __init__(self, *, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"], pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"], extension_noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pose_noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], start: LegParams) -> None:
+        ...
+    def evaluate(self, params: LegParams, free: collections.abc.Sequence[str] = []) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
+        """
+        (residual (rows,), jacobian (rows, free)): predicted minus measured over the noise, and its derivatives.
+        """
+    def predict(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, 6): what the pose sensors should read; NaN where the parameters have no pose.
+        """
+    @property
+    def first_row(self) -> list[int]:
+        """
+        Of each pose, and the number of rows.
+        """
+    @property
+    def rows(self) -> int:
+        ...
+class Calibration:
+    """
+    The mechanism that comes closest to measured poses.
+    """
+    @property
+    def converged(self) -> bool:
+        ...
+    @property
+    def iterations(self) -> int:
+        ...
+    @property
+    def jacobian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, free), whitened, at params
+        """
+    @property
+    def message(self) -> str:
+        ...
+    @property
+    def params(self) -> LegParams:
+        ...
+    @property
+    def residual(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,), whitened, at params
+        """
 class PlatformRecord:
     """
     One evenly sampled record of the rig 'platform'; arrays (n, 3), a column a leg, SI.
@@ -2959,6 +3007,10 @@ def air_spring(params: Params, mean_pressure: typing.SupportsFloat | typing.Supp
 def alpha_beta(measured: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], dt: typing.SupportsFloat | typing.SupportsIndex, alpha: typing.SupportsFloat | typing.SupportsIndex, beta: typing.SupportsFloat | typing.SupportsIndex, value: typing.SupportsFloat | typing.SupportsIndex, rate: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     (values, rates), each (n,), of the alpha-beta filter that starts at value and rate.
+    """
+def calibrate(problem: PoseProblem, start: LegParams, free: collections.abc.Sequence[str], tolerance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], huber: typing.SupportsFloat | typing.SupportsIndex = 0.0, max_iterations: typing.SupportsInt | typing.SupportsIndex = 100) -> Calibration:
+    """
+    Least squares over the parameters `free`, each held to its start by a standard deviation `tolerance`, by Huber's loss on poses beyond `huber` standard deviations; ValueError for a bad start.
     """
 def carried_points(params: Params, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], at_rest: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """
