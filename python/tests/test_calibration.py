@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ from sms.calibration.result import geometry_file
 from sms.calibration.rig import PosesRig, load_poses
 from sms.cli import app
 from sms.errors import InputError
+from sms.io.schema import ParameterTable
 from sms.parameter_files import c_header, load_params
+from sms.parameters import LEG_PARAMETERS
 from typer.testing import CliRunner
 
 from validation.trials.calibrate import Machine, draw
@@ -94,6 +97,10 @@ def test_geometry_file_is_what_load_params_reads(machine: Machine, tmp_path: Pat
     params = load_params(file)
     for f in found.found:
         assert params[f.unknown.name] == pytest.approx(f.value, abs=1e-8)
+    table = tomllib.loads(file.read_text())["parameters"]
+    for name, entry in table.items():  # as [parameters] of a rig file has them
+        assert name in LEG_PARAMETERS
+        ParameterTable.model_validate(entry)
     pose = sms.forward_kinematics([0.1, 0.2, 0.15], params=params)
     assert pose.roll != sms.forward_kinematics([0.1, 0.2, 0.15]).roll
     assert f"p->base_joint_1_x = {params['base_joint_1_x']!r};" in c_header(params, "geometry.toml")

@@ -113,5 +113,5 @@ def _declared(f: Found) -> Any:
     row.add("value", f"{f.value:.9g}{unit}" if unit else float(f"{f.value:.9g}"))
     half = COVERAGE * f.deviation
     row.add("uncertainty", f"{half:.3g}{unit}" if unit else float(f"{half:.3g}"))
-    row.add("source", "measured" if f.measured else "drawing, within its tolerance")
+    row.comment("measured" if f.measured else "drawing, within its tolerance")
     return row
