@@ -97,8 +97,8 @@ class FmuCalls {
     const std::size_t n = inputs_.size();
     return three_ ? at<int(void*, const std::uint32_t*, std::size_t, const double*, std::size_t)>(set_values_)(
                         instance_, inputs_.data(), n, u, n)
-                  : at<int(void*, const std::uint32_t*, std::size_t, const double*)>(set_values_)(
-                        instance_, inputs_.data(), n, u);
+                  : at<int(void*, const std::uint32_t*, std::size_t, const double*)>(set_values_)(instance_,
+                                                                                                  inputs_.data(), n, u);
   }
 
   int rates_at(double* out) const {
@@ -135,8 +135,8 @@ void bind_fmu(py::module_& m) {
   py::class_<FmuCalls>(m, "FmuCalls",
                        "Functions of an instance of an FMU for model exchange, by their addresses (0: none), and the "
                        "value references of its states, their rates, inputs and outputs. ValueError for what is none.")
-      .def(py::init<int, std::uintptr_t, std::uintptr_t, std::uintptr_t, std::uintptr_t, std::uintptr_t,
-                    std::uintptr_t, References, References, References, References>(),
+      .def(py::init<int, std::uintptr_t, std::uintptr_t, std::uintptr_t, std::uintptr_t, std::uintptr_t, std::uintptr_t,
+                    References, References, References, References>(),
            py::arg("version"), py::arg("instance"), py::arg("set_states"), py::arg("set_values"), py::arg("get_rates"),
            py::arg("get_values"), py::arg("get_directional"), py::arg("states"), py::arg("rates"), py::arg("inputs"),
            py::arg("outputs"))
