@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from sms.diagnosis.localisation.signal_functions import (
 from sms.diagnosis.localisation.unknown_inputs import bases_of, with_curve, with_terms
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.remainder import Shape
+from sms.estimation.least_squares import changed
 from sms.io.records import load_record
 from sms.io.rig import load_rig
 from sms.parameters import LEG_PARAMETERS, PARAMETERS
@@ -151,3 +153,20 @@ def test_a_leak_of_one_leg_is_named_with_its_size(tmp_path: Path) -> None:
     assert answer.hidden is not None
     assert answer.hidden.equation.startswith("flow of the lower chamber")
     assert "leg 2" in answer.sentence
+
+
+def test_a_second_parameter_that_records_hardly_feel_stays_within_its_range(tmp_path: Path) -> None:
+    """Without Stribeck friction nothing is sensitive to its growth with pressure: it ended at its bound, and the friction
+    with pressure, which fitted best, was refused for that."""
+    rig = load_rig(write_platform(tmp_path, 4, {}, 2.2))
+    data = make_data(rig, [load_record(rig, source) for source in rig.records])
+    effects = {e.key: e for e in effects_of(rig)}
+    effect = effects["pressure_dependent_friction"]
+    baseline = baseline_hypothesis(data, list(effects.values()))
+    first, second = effect.parameters
+    assert first not in baseline.with_effect(effect).known
+    assert baseline.with_effect(effect).known[second] == pytest.approx(5e-5)
+    without = {"stribeck_acceleration_factor": 0.0}
+    start = changed(baseline.start, list(without), np.array(list(without.values())))
+    fitted = fit(replace(baseline, start=start).with_effect(effect), data.identify, start)
+    assert second in fitted.movable

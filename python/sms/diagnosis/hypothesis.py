@@ -74,7 +74,9 @@ class Hypothesis:
     ) -> Hypothesis:
         """The effect's parameters freed within their bounds, its first one within what is plausible if given.
 
-        The first one is its size; of the others it is known what is declared of them (the critical ratio of a leak).
+        The first one is its size; of the others it is known what is declared of them (the critical ratio of a leak),
+        else that their bounds hold all such machines but one in twenty: records that are insensitive to one leave it
+        where it is.
         """
         wide = {
             name: (self.table[name].lower, self.table[name].upper) for name in effect.parameters
@@ -84,8 +86,8 @@ class Hypothesis:
             wide[effect.parameters[0]] = max(low, plausible[0]), min(high, plausible[1])
         known = {name: u for name, u in self.known.items() if name not in wide}
         for name in effect.parameters[1:]:
-            if (declared := self.known.get(name, self.table[name].uncertainty)) > 0.0:
-                known[name] = declared
+            low, high = wide[name]
+            known[name] = self.known.get(name, self.table[name].uncertainty) or (high - low) / 4.0
         return replace(self, free=self.free | wide, known=known, causes=(*self.causes, effect))
 
 
