@@ -156,8 +156,8 @@ def test_a_leak_of_one_leg_is_named_with_its_size(tmp_path: Path) -> None:
 
 
 def test_a_second_parameter_that_records_hardly_feel_stays_within_its_range(tmp_path: Path) -> None:
-    """Without Stribeck friction nothing is sensitive to its growth with pressure: it ended at its bound, and the friction
-    with pressure, which fitted best, was refused for that."""
+    """Without Stribeck friction nothing is sensitive to its growth with pressure: it ended at its bound, and the
+    friction with pressure, which fitted best, was refused for that."""
     rig = load_rig(write_platform(tmp_path, 4, {}, 2.2))
     data = make_data(rig, [load_record(rig, source) for source in rig.records])
     effects = {e.key: e for e in effects_of(rig)}
