@@ -2,9 +2,11 @@
 
     python -m validation.trials.peers --rig cylinder --count 20 --seed 1
     python -m validation.trials.peers --rig bench --count 40 --seed 300000 --out peers
+    python -m validation.trials.peers --foreign ../shared/foreign --out peers
 
-The first puts 20 trials of each sort, the second those of `./dev trials` with the same seeds; what is in its folder
-already is not done again. Makes the environment build/diagnosis_peers (PySINDy, scikit-learn) when it is missing.
+The first puts 20 trials of each sort, the second those of `./dev trials` with the same seeds, the third the data sets
+of `./dev trials foreign`; what is in the folder of answers already is not done again. Makes the environment
+build/diagnosis_peers (PySINDy, scikit-learn) when it is missing.
 """
 
 from __future__ import annotations
@@ -15,8 +17,9 @@ import secrets
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from pathlib import Path
 
 from rich.console import Console
@@ -28,10 +31,12 @@ from rich.progress import (
     TimeRemainingColumn,
     track,
 )
+from sms.errors import InputError
 
 from validation.reference.multibody.environment import ROOT, PeersUnavailableError, peer_python
+from validation.trials.foreign import sets_of
 from validation.trials.machines import tasks
-from validation.trials.peers import on_cylinder, on_machines
+from validation.trials.peers import on_cylinder, on_foreign, on_machines
 from validation.trials.peers.machine_table import machine_table
 from validation.trials.peers.peer_process import PeerProcess
 from validation.trials.peers.scoring import SORTS, Said, table
@@ -53,20 +58,29 @@ def run_machines(
 ) -> list[on_machines.Round]:
     """The trials of `./dev trials` with these seeds, by every method, one after another."""
     wanted = tasks(rig, first, count, multiple)
+    with PeerProcess(environment()) as peers, _progress(count) as each:
+        return on_machines.play_all(wanted, out / f"{rig}.jsonl", peers.ask, each)
+
+
+def run_foreign(folder: Path, out: Path) -> list[on_machines.Round]:
+    """The data sets of another simulator, by every method, one after another."""
+    if not (count := len(sets_of(folder))):
+        raise InputError(f"{folder}: there is no set with a rig.toml and a key in keys/")
+    with PeerProcess(environment()) as peers, _progress(count) as each:
+        return on_foreign.play_folder(folder, out / "foreign.jsonl", peers.ask, each)
+
+
+@contextmanager
+def _progress(count: int) -> Iterator[Callable[[], None]]:
     columns = (
-        TextColumn("hiding, and asking everyone"),
+        TextColumn("asking everyone"),
         BarColumn(),
         MofNCompleteColumn(),
         TimeRemainingColumn(),
     )
-    with (
-        PeerProcess(environment()) as peers,
-        Progress(*columns, console=Console(stderr=True), transient=True) as progress,
-    ):
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("", total=count)
-        return on_machines.play_all(
-            wanted, out / f"{rig}.jsonl", peers.ask, lambda: progress.advance(task)
-        )
+        yield lambda: progress.advance(task)
 
 
 # ---- cylinder ----------------------------------------------------------------------------
@@ -133,6 +147,9 @@ def main() -> None:
     )
     parser.add_argument("--rig", choices=("cylinder", *effects.RIGS), default="cylinder")
     parser.add_argument(
+        "--foreign", type=Path, help="folder with setNN/ and keys/setNN.json, in place of a rig"
+    )
+    parser.add_argument(
         "--count", type=int, default=20, help="trials; on the cylinder: of each sort"
     )
     parser.add_argument("--seed", type=int, help="of the first trial; fresh if left out")
@@ -146,7 +163,10 @@ def main() -> None:
     console = Console(width=140)
     title = f"effects at {options.multiple:g} times their detection limit"
     try:
-        if options.rig == "cylinder":
+        if options.foreign is not None:
+            rounds = run_foreign(options.foreign, options.out)
+            console.print(machine_table(rounds, f"{options.foreign}, {len(rounds)} sets", "gain"))
+        elif options.rig == "cylinder":
             said = run(first, options.count, options.multiple, options.workers)
             last = first + 3 * options.count - 1
             console.print(table(said, f"cylinder, seeds {first} to {last}, {title}"))
@@ -155,7 +175,7 @@ def main() -> None:
             last = first + options.count - 1
             console.print(goal_table([r.outcome for r in rounds]))
             console.print(machine_table(rounds, f"{options.rig}, seeds {first} to {last}, {title}"))
-    except PeersUnavailableError as error:
+    except (InputError, PeersUnavailableError) as error:
         sys.exit(str(error))
 
 

@@ -44,6 +44,7 @@ class Judged:
         return self.said.gain / self.hidden.achievable
 
 
+GAIN = "gain of true model's"
 COLUMNS = (
     "method",
     "right cause",
@@ -53,16 +54,16 @@ COLUMNS = (
     "seen",
     "seen, no false alarm",
     "right equation",
-    "gain of true model's",
+    GAIN,
     "gain, outside",
     "CPU s",
 )
 
 
-def machine_table(rounds: Sequence[Round], title: str) -> Table:
-    """One row a method; shares as counts."""
+def machine_table(rounds: Sequence[Round], title: str, gain: str = GAIN) -> Table:
+    """One row a method; shares as counts. gain: what the gain of a hidden effect is held against, as a heading."""
     table = Table(title=title, title_justify="left", title_style="bold", box=None)
-    for number, name in enumerate(COLUMNS):
+    for number, name in enumerate(gain if c == GAIN else c for c in COLUMNS):
         table.add_column(name, justify="right" if number else "left", no_wrap=number == 0)
     for method in dict.fromkeys(o.method for r in rounds for o in r.opinions):
         own = [Judged(r, o) for r in rounds for o in r.opinions if o.method == method]

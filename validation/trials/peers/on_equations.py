@@ -25,6 +25,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
 from validation.trials.peers import in_their_environment as on_residual
 from validation.trials.peers.exchange import Array, Averages, Equation, PlantAnswer, Question, load
+from validation.trials.peers.regime_local import regime_local
 
 THRESHOLDS = np.geomspace(0.05, 5.0, 15)
 """Of sequentially thresholded least squares, in standard deviations of the noise."""
@@ -165,6 +166,7 @@ METHODS: dict[str, Callable[[Question], PlantAnswer]] = {
     "sparse regression": lambda question: over_equations(question, sparse),
     "Gaussian process, equations": lambda question: over_equations(question, gaussian_process),
     "Gaussian process, readings": gaussian_process_on_readings,
+    "regime-local laws": lambda question: over_equations(question, regime_local),
     "whiteness": whiteness,
 }
 

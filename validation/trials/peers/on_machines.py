@@ -78,18 +78,22 @@ def play(task: Task, ask: AskPeers) -> Round:
         records, sealed = Path(folder) / "records", Path(folder) / "sealed" / "truth.json"
         hide(task, records, sealed)
         answer = answered(records, task.seed)
-        case = answer.case
-        opinions = [*_by_aic(case)]
-        question, seconds = question_of(case)
-        for method, said in ask(question).items():
-            opinions.append(_of_peer(method, said, case, seconds))
+        opinions = asked(answer.case, ask)
         outcome = outcome_of(task, answer, open_truth(sealed, records))
-    return Round(outcome, _sits_in(case, outcome), [_ours(case, outcome), *opinions])
+    return Round(outcome, _sits_in(answer.case, outcome), [ours(answer.case, outcome), *opinions])
 
 
-def _ours(case: Case, outcome: Outcome) -> Opinion:
+def asked(case: Case, ask: AskPeers) -> list[Opinion]:
+    """What every other method says of the records of a case."""
+    opinions = [*_by_aic(case)]
+    question, seconds = question_of(case)
+    return [*opinions, *(_of_peer(m, said, case, seconds) for m, said in ask(question).items())]
+
+
+def ours(case: Case, outcome: Outcome) -> Opinion:
+    """What the diagnosis says."""
     by_key = {key_of(e): e for e in effects_of(case.data.rig)}
-    equations = [_equation_of(by_key[k]) for members in outcome.named for k in members]
+    equations = [equation_of(by_key[k]) for members in outcome.named for k in members]
     if outcome.block:
         equations = [_equation(outcome.block)]
     gain = _of_curve(case) if case.verdict == "unknown" else outcome.gain
@@ -126,7 +130,8 @@ _OF_ID = {"command_delay": "flow", "backlash": "reading", "frame_compliance": "r
 """Where the block of the catalogue is not an equation of the plant."""
 
 
-def _equation_of(effect: Effect) -> str:
+def equation_of(effect: Effect) -> str:
+    """Of the plant, in which an effect of the catalogue sits."""
     return _OF_ID.get(effect.id) or _OF_BLOCK.get(effect.block, "reading")
 
 
@@ -141,7 +146,7 @@ def _sits_in(case: Case, outcome: Outcome) -> list[str]:
     by_key = {key_of(e): e for e in effects_of(case.data.rig)}
     found = []
     for key in outcome.hidden:
-        equation = BLOCKS.get(key) or (_equation_of(by_key[key]) if key in by_key else "reading")
+        equation = BLOCKS.get(key) or (equation_of(by_key[key]) if key in by_key else "reading")
         # What the supply does wrong is seen in the flows.
         found += ["supply", "flow"] if equation == "supply" else [equation]
     return [e for e in dict.fromkeys(found) if e != "reading"]
@@ -163,7 +168,7 @@ def _by_aic(case: Case) -> Iterator[Opinion]:
             [[key_of(effect)]] if effect else [],
             effect is not None,
             margin,
-            [_equation_of(effect)] if effect else [],
+            [equation_of(effect)] if effect else [],
             taken(case, lack_of_fit(fitted, data)),
             None,
         )

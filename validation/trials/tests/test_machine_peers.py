@@ -12,6 +12,7 @@ import pytest
 from validation.trials.machines import Task, tasks
 from validation.trials.peers.exchange import Averages, Equation, Part, PlantAnswer, Question, load
 from validation.trials.peers.machine_table import Judged, machine_table
+from validation.trials.peers.on_foreign import accepted_names, sort_of
 from validation.trials.peers.on_machines import Opinion, Round, play_all
 from validation.trials.scoring import Outcome
 
@@ -91,3 +92,14 @@ def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
 
     assert play_all(wanted, file, never, lambda: None) == [done]
     assert wanted == [Task("bench", 1, "catalogue", 3.0)]
+
+
+def test_an_effect_that_a_key_accepts_counts_as_the_one_that_is_hidden() -> None:
+    named = accepted_names(
+        [["sensor_gain:extension", "tube"], ["piston_leakage"]], [["clock_skew", "tube"]]
+    )
+    assert named == [["sensor_gain", "clock_skew"], ["piston_leakage"]]
+    assert sort_of({"effects": [{"name": "none"}]}) == "healthy"
+    assert sort_of({"effects": [{"name": "unknown_cable"}]}) == "outside"
+    assert sort_of({"effects": [{"name": "leak"}]}) == "catalogue"
+    assert sort_of({"effects": [{"name": "leak"}, {"name": "mass"}]}) == "pair"
