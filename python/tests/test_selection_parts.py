@@ -7,11 +7,12 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.reference import _inflation
-from sms.diagnosis.selection import judgement, pairs
+from sms.diagnosis.selection import judgement, pairs, stepwise
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step, chosen_by_step
-from sms.diagnosis.selection.outcome import Round
+from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.estimation.windows import Runs
 
 from validation.random_cases import draw
@@ -130,3 +131,54 @@ def test_several_names_of_one_change_take_one_of_the_places_that_are_fitted() ->
     chosen = chosen_by_step(steps)
     assert chosen[:3] == [0, 1, 4]
     assert set(chosen) == {0, 1, 2, 3, 4}
+
+
+def test_of_nothing_a_cause_takes_no_share() -> None:
+    """A healthy machine was named for it: nothing was left on its identification records, 6 % taken on the others."""
+    data = cast(
+        Any,
+        SimpleNamespace(
+            healthy=None,
+            identify=SimpleNamespace(kind=SimpleNamespace(practically_significant=(0.15, 0.3))),
+        ),
+    )
+    trial = Trial(cast(Any, "e"), cast(Any, None), 0.0, np.zeros(1))
+    trial.seen_share, trial.gain = 1.0, 0.06
+
+    def refused(identify: float, validate: float) -> bool:
+        left = Left(np.full((8, 2), 1.0 + identify), np.full((8, 2), 1.0 + validate))
+        return bool(judgement._leaves_much(trial, 0.5, judgement._telling(left, data)))
+
+    assert refused(identify=0.0, validate=2.0)
+    assert not refused(identify=5.0, validate=2.0)
+    assert not refused(identify=5.0, validate=0.1)
+    assert not refused(identify=0.0, validate=0.1)  # of so little neither says more than the other
+
+
+def test_what_ends_up_within_what_is_declared_of_it_is_no_cause(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(stepwise, "_with_these", lambda found, *rest: [m[0] for m in found])
+
+    def found(name: str) -> list[Trial]:
+        made = Trial(
+            cast(Any, SimpleNamespace(parameters=(name,))), cast(Any, None), 0.0, np.zeros(1)
+        )
+        made.accepted = True
+        return [made]
+
+    hypothesis = SimpleNamespace(start={"mass": 3.6, "leak": 0.0}, known={"mass": 0.2})
+    baseline = cast(Any, SimpleNamespace(hypothesis=hypothesis))
+    mass, leak = found("mass"), found("leak")
+    outcome = Outcome(cast(Any, None), [], [mass, leak])
+
+    def without(value: float) -> Outcome | None:
+        final = cast(Any, SimpleNamespace(params={"mass": value, "leak": 1e-9}))
+        return stepwise.without_unshifted(outcome, final, baseline, cast(Any, None))
+
+    assert without(3.9) is None
+    fewer = without(3.7)
+    assert fewer is not None
+    assert fewer.found == [leak]
+    assert not mass[0].accepted
+    assert leak[0].accepted

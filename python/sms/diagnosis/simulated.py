@@ -53,7 +53,7 @@ from sms.diagnosis.result import Cause, Diagnosis, NotTestable, ParameterValue, 
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.selection.stepwise import stepwise_selection
+from sms.diagnosis.selection.stepwise import stepwise_selection, without_unshifted
 from sms.diagnosis.wording_simulated import (
     conclusion,
     nearest_in_words,
@@ -119,12 +119,13 @@ def investigate(
         return small(left, least) or nothing_left(left, data)
 
     outcome = stepwise_selection(baseline, data, able, rng, progress, least)
+    if outcome.found:
+        progress("estimating sizes beside what no parameter explains", 0.8)
+    final, outcome = _with_sizes(outcome, baseline, data)
     adequate = enough(outcome.final)
     found = law = None
     if outcome.found:
         law = inconstancy_of(outcome, data, adequate)
-        progress("estimating sizes beside what no parameter explains", 0.8)
-        final = generalised(outcome.final, data)
         outcome = replace(outcome, final=final, named=law is None)
     before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
     if not adequate and not outcome.groups:
@@ -134,6 +135,17 @@ def investigate(
         found = inconsistency(plain, data.as_declared, able, before.floor)
     verdict = decide(outcome, adequate) if found is None else "data-fault"
     return Case(data, baseline, outcome, before, after, least, blind, able, verdict, found, law)
+
+
+def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted, Outcome]:
+    """The final model by generalised least squares, and the causes whose sizes in it are beyond what is declared."""
+    final = generalised(outcome.final, data) if outcome.found else outcome.final
+    while (
+        outcome.found and (fewer := without_unshifted(outcome, final, baseline, data)) is not None
+    ):
+        outcome = fewer
+        final = generalised(outcome.final, data) if outcome.found else outcome.final
+    return final, outcome
 
 
 def complete(

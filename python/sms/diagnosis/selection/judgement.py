@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import chi2, wilcoxon
 
 from sms.arrays import Array
-from sms.diagnosis.adequacy.residual_energy import ROLES, Left, taken_beyond_floor
+from sms.diagnosis.adequacy.residual_energy import ROLES, Left, Role, taken_beyond_floor
 from sms.diagnosis.adequacy.systematic_error import generalised
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Healthy
@@ -75,12 +75,15 @@ def judge(
         else:
             disagreement = ""
         untenable = _untenable(trial, data) or disagreement
-        trial.reason = untenable or _leaves_much(trial, needed)
+        trial.reason = untenable or _leaves_much(trial, needed, _telling(before, data))
         channel = channel_of_its_own(trial.effect, data)
         if trial.reason and trial.lower > 0.0 and channel is not None and data.healthy is None:
             trial.p_value, trial.cross_validated = by_score, False
-            _by_windows(trial, before.of(channel), after.of(channel), weights, tried)
-            trial.reason = _untenable(trial, data) or _leaves_much(trial, needed)
+            was = before.of(channel)
+            _by_windows(trial, was, after.of(channel), weights, tried)
+            trial.reason = _untenable(trial, data) or _leaves_much(
+                trial, needed, _telling(was, data)
+            )
         trial.accepted = not trial.reason
     if needed > LEAST_SHARE:
         _accept_significant([t for t in trials if t.fitted is not current], current, data)
@@ -203,14 +206,23 @@ def _untenable(trial: Trial, data: Data) -> str:
     return ""
 
 
-def _leaves_much(trial: Trial, needed: float) -> str:
+def _telling(before: Left, data: Data) -> tuple[Role, ...]:
+    """The roles in which a practically significant error is left: of nothing every effect takes a hundred percent."""
+    if data.healthy is not None:
+        return ROLES
+    least = data.identify.kind.practically_significant[0]
+    return tuple(role for role in ROLES if before.excess(role) >= least) or ROLES
+
+
+def _leaves_much(trial: Trial, needed: float, telling: Sequence[Role]) -> str:
     """That it takes less than it needs to of what is left, if so; of the identification records alone where the
     validation records are insensitive to it.
     """
     if trial.cross_validated:
         return _taken(trial) if trial.seen_share < needed else ""
-    kept = (1.0 - trial.seen_share) * (1.0 - trial.gain)
-    return _taken(trial) if kept > (1.0 - needed) ** 2 else ""
+    share: dict[Role, float] = {"identify": trial.seen_share, "validate": trial.gain}
+    kept = np.prod([1.0 - share[role] for role in telling])
+    return _taken(trial) if kept > (1.0 - needed) ** len(telling) else ""
 
 
 def _taken(trial: Trial) -> str:

@@ -253,6 +253,24 @@ def _implausible(found: Sequence[list[Trial]], final: Fitted, data: Data) -> lis
     return None
 
 
+def without_unshifted(
+    outcome: Outcome, final: Fitted, baseline: Fitted, data: Data
+) -> Outcome | None:
+    """Without the first cause whose value in the final model is within what is declared of it: it is none, whatever it
+    stood in for before the others came. None where each is beyond.
+    """
+    h = baseline.hypothesis
+    for members in outcome.found:
+        name = members[0].effect.parameters[0]
+        if abs(final.params[name] - h.start[name]) <= h.known.get(name, 0.0):
+            for trial in members:
+                trial.accepted, trial.reason = False, "beside other causes within what is declared"
+            kept = [m for m in outcome.found if m is not members]
+            current = _with_these(kept, baseline, outcome.final, data) if kept else baseline
+            return Outcome(current, outcome.rounds, kept)
+    return None
+
+
 def _with_these(
     found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data
 ) -> Fitted:
