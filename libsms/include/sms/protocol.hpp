@@ -38,7 +38,8 @@ void put_bits(Frame& f, Long value) {
   static_assert(start % 8 + length <= 32 && start + length <= 64, "fits a Long and the frame");
   for (int i = start / 8; i <= (start + length - 1) / 8; ++i) {
     const int shift = 8 * i - start;
-    f.octet[i] = Word((f.octet[i] | Word((shift >= 0 ? value >> shift : value << -shift) & 0xFFu)) & 0xFFu);
+    const Long bits = shift >= 0 ? value >> shift : value << -shift;
+    f.octet[i] = Word((f.octet[i] | bits) & 0xFFu);
   }
 }
 

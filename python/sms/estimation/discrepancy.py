@@ -124,8 +124,12 @@ class Whitener:
         """(rows,) or (rows, m): times V^(1/2)."""
         return self._times(self.root - 1.0, values)
 
-    def _times(self, factor: Array, values: Array) -> Array:
-        out = np.array(values, dtype=np.float64)
+    def whiten_in_place(self, values: Array) -> Array:
+        """The same of an array that nobody else needs."""
+        return self._times(1.0 / self.root - 1.0, values, values)
+
+    def _times(self, factor: Array, values: Array, out: Array | None = None) -> Array:
+        out = np.array(values, dtype=np.float64) if out is None else out
         for r, basis, f in zip(self.rows, self.bases, factor, strict=True):
             part = basis.T @ out[r]
             out[r] += basis @ (f * part.T).T
@@ -146,5 +150,5 @@ class Whitened:
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         """As Problem has them, both times the inverse root of the covariance."""
         residual, jacobian = self.problem.evaluate(params, free)
-        white = self.whitener.whiten
+        white = self.whitener.whiten_in_place
         return white(residual), white(jacobian) if len(free) else jacobian

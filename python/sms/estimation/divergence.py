@@ -59,12 +59,10 @@ class WithinNumbers:
         return self._flat_where_steep(self.problem.hidden(params, knots), np.array(LARGEST_INPUT))
 
     def _flat_where_steep(self, jacobian: Array, steepest: Array) -> Array:
-        steep = np.any(~(np.abs(jacobian) < steepest), axis=1)
-        if steep.any():
-            for w in self.windows:
-                rows = slice(w.row, w.row + w.rows)
-                if steep[rows].any():
-                    jacobian[rows] = 0.0
+        for w in self.windows:
+            rows = slice(w.row, w.row + w.rows)
+            if not np.all(np.abs(jacobian[rows]) < steepest):
+                jacobian[rows] = 0.0
         return jacobian
 
 

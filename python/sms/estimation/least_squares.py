@@ -132,9 +132,11 @@ class _Objective:
     def work_out(self, at: _Iterate, kept: Collection[str]) -> None:
         """Residual and Jacobian where it stands, but for the sensitivities that are kept."""
         new = [k for k, name in enumerate(self._names) if name not in kept]
+        if anew := len(new) == len(self._names):
+            at.slope = np.empty((0, 0))  # its memory is needed now
         at.residual, jacobian = self._worked_out(at.value, new)
         at.exact = True
-        if len(new) == len(self._names):
+        if anew:
             at.slope = jacobian
         else:
             at.slope[:, new] = jacobian
@@ -143,7 +145,8 @@ class _Objective:
         """Residual (rows,) and the Jacobian (rows, numbers) of some of the parameters."""
         names = [self._names[k] for k in numbers]
         residual, jacobian = self._problem.evaluate(self.params(value), names)
-        return residual, jacobian * self.scale[numbers]
+        jacobian *= self.scale[numbers]
+        return residual, jacobian
 
     def cost(self, residual: Array, value: Array) -> float:
         return float(residual @ residual + np.sum((self.pull @ (value - self.centre)) ** 2))

@@ -22,7 +22,10 @@ class Problem(Protocol):
     def evaluate(
         self, params: _core.Params, free: Sequence[str] = ...
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Residual (rows,), predicted less measured over the noise, and Jacobian (rows, free)."""
+        """Residual (rows,), predicted less measured over the noise, and Jacobian (rows, free).
+
+        Both are the caller's to change.
+        """
         ...
 
 
