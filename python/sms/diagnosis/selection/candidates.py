@@ -6,8 +6,9 @@ nothing more is found.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from sms.diagnosis.hypothesis import (
     nuisance_of,
     residual_of,
     sensitivities,
+    without_sensitivities,
 )
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.score_test import ScoreTests, score_tests
@@ -29,6 +31,9 @@ from sms.estimation.nuisance import project
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import common_parameter
+
+
+Key = TypeVar("Key")
 
 
 @dataclass
@@ -109,6 +114,31 @@ def moved(effect: Effect, params: _core.Params, change: float, rig: Rig) -> floa
     """The effect's parameter so much larger, within its bounds whatever the sum is rounded to."""
     name = effect.parameters[0]
     return float(np.clip(params[name] + change, rig.table[name].lower, rig.table[name].upper))
+
+
+def converged(fitted: Fitted, data: Data) -> Fitted:
+    """A candidate's fit, carried on to its end with all sensitivities its own."""
+    return fit(
+        fitted.hypothesis,
+        data.identify,
+        fitted.params,
+        nearby=fitted.slopes,
+        discrepancy=data.allowed(data.identify),
+    )
+
+
+def leaders_settled(
+    fits: Mapping[Key, Fitted], left_by: Callable[[Fitted], float], data: Data
+) -> dict[Key, Fitted]:
+    """Candidates are fitted with few Jacobians, most of whose columns are those of the model before. Whichever leaves
+    least is carried on to its end, until that one has been: an effect far from where the model stood bends the
+    sensitivities of all else, and is not judged half way.
+    """
+    settled, rough = dict(fits), set(fits)
+    while settled and (best := min(settled, key=lambda k: left_by(settled[k]))) in rough:
+        rough.remove(best)
+        settled[best] = without_sensitivities(converged(settled[best], data))
+    return settled
 
 
 def _unit(columns: Array) -> Array:

@@ -16,7 +16,7 @@ from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, logarithms
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
-from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.candidates import Trial, leaders_settled
 from sms.diagnosis.selection.finite_steps import Step, best_steps, extended
 from sms.diagnosis.selection.judgement import alike, judge
 from sms.diagnosis.selection.outcome import Round
@@ -45,6 +45,7 @@ def try_pairs(
         both[frozenset((i, j))] = _together(alone[i], alone[j], current, data, step)
     if not both:
         return []
+    both = leaders_settled(both, lambda f: _left_of(f, data), data)
     best, pair = min(both.items(), key=lambda item: _left_of(item[1], data))
     if not _enough(current, pair, data):
         return []

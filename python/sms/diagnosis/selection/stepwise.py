@@ -33,7 +33,14 @@ from sms.diagnosis.adequacy.residual_energy import (
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
 from sms.diagnosis.other_records import looked_at_again, refitted
-from sms.diagnosis.selection.candidates import Trial, moved, room_of, score_effects
+from sms.diagnosis.selection.candidates import (
+    Trial,
+    converged,
+    leaders_settled,
+    moved,
+    room_of,
+    score_effects,
+)
 from sms.diagnosis.selection.finite_steps import (
     Step,
     best_steps,
@@ -124,7 +131,8 @@ def _promising(
             and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
         )
     ]
-    return first | {k: candidate(k) for k in rivals if k not in first}
+    first |= {k: candidate(k) for k in rivals if k not in first}
+    return leaders_settled(first, lambda f: logarithms(data.identify, f.fit.residual), data)
 
 
 def _fitted(
@@ -198,7 +206,7 @@ def stepwise_selection(
         found_now = [r.members for r in together] or ([members] if members else [])
         if not found_now:
             break
-        current = _converged(found_now[-1][0].fitted, data)
+        current = converged(found_now[-1][0].fitted, data)
         for members in found_now:
             members[0].fitted = current
         remaining = [e for e in remaining if all(e is not m[0].effect for m in found_now)]
@@ -229,18 +237,6 @@ def _forget(trials: Sequence[Trial], current: Fitted, data: Data) -> None:
             data.refitted_of.pop(id(trial.fitted), None)
             data.unseen_of.pop(id(trial.fitted), None)
             trial.fitted = without_sensitivities(trial.fitted)
-
-
-def _converged(fitted: Fitted, data: Data) -> Fitted:
-    """A candidate's fit, carried on to its end."""
-    allowed = data.allowed(data.identify)
-    return fit(
-        fitted.hypothesis,
-        data.identify,
-        fitted.params,
-        nearby=fitted.slopes,
-        discrepancy=allowed,
-    )
 
 
 def _implausible(found: Sequence[list[Trial]], final: Fitted, data: Data) -> list[Trial] | None:
