@@ -156,6 +156,25 @@ def test_a_platforms_records_ask_for_the_gain_they_were_made_with(
     assert np.mean(at_first**2) > 20.0
 
 
+@pytest.mark.parametrize("kind", ["bench", "platform"])
+@pytest.mark.parametrize("law", ["pid", "state_feedback"])
+def test_no_gain_of_the_controller_makes_a_window_count_as_diverged(
+    tmp_path: Path, kind: str, law: str
+) -> None:
+    path = (
+        write_bench(tmp_path, 3, {}, in_loop=True)
+        if kind == "bench"
+        else write_platform(tmp_path, 3, {}, 2.2, in_loop=True)
+    )
+    changed(path, ('controller = "simulated"', f'controller = "simulated"\nlaw = "{law}"'))
+    rig = load_rig(path)
+    runs = make_data(rig, [load_record(rig, source) for source in rig.records]).identify
+    gains = [e.parameters[0] for e in effects_of(rig) if e.id == "controller_mismatch"]
+    _, slope = runs.problem.evaluate(rig.start(), [*gains, "viscous_friction"])
+    for w in runs.problem.windows:
+        assert np.all(np.any(slope[w.row : w.row + w.rows] != 0.0, axis=0))
+
+
 # ---- the whole method ----------------------------------------------------------------------------
 
 

@@ -32,7 +32,6 @@ from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import common_parameter
 
-
 Key = TypeVar("Key")
 
 
