@@ -127,16 +127,24 @@ def converged(fitted: Fitted, data: Data) -> Fitted:
 
 
 def leaders_settled(
-    fits: Mapping[Key, Fitted], left_by: Callable[[Fitted], float], data: Data
+    fits: Mapping[Key, Fitted],
+    left_by: Callable[[Fitted], float],
+    alike: Callable[[Key, Key], bool],
+    data: Data,
 ) -> dict[Key, Fitted]:
     """Candidates are fitted with few Jacobians, most of whose columns are those of the model before. Whichever leaves
-    least is carried on to its end, until that one has been: an effect far from where the model stood bends the
-    sensitivities of all else, and is not judged half way.
+    least is carried on to its end, and with it those that are alike to it, until that one has been: an effect far from
+    where the model stood bends the sensitivities of all else, and is not judged half way, nor are its rivals.
     """
     settled, rough = dict(fits), set(fits)
-    while settled and (best := min(settled, key=lambda k: left_by(settled[k]))) in rough:
-        rough.remove(best)
-        settled[best] = without_sensitivities(converged(settled[best], data))
+    while settled:
+        best = min(settled, key=lambda k: left_by(settled[k]))
+        near = [k for k in settled if k in rough and (k == best or alike(best, k))]
+        if not near:
+            break
+        for k in near:
+            rough.remove(k)
+            settled[k] = without_sensitivities(converged(settled[k], data))
     return settled
 
 

@@ -45,7 +45,7 @@ def try_pairs(
         both[frozenset((i, j))] = _together(alone[i], alone[j], current, data, step)
     if not both:
         return []
-    both = leaders_settled(both, lambda f: _left_of(f, data), data)
+    both = leaders_settled(both, lambda f: _left_of(f, data), lambda one, other: False, data)
     best, pair = min(both.items(), key=lambda item: _left_of(item[1], data))
     if not _enough(current, pair, data):
         return []

@@ -132,7 +132,12 @@ def _promising(
         )
     ]
     first |= {k: candidate(k) for k in rivals if k not in first}
-    return leaders_settled(first, lambda f: logarithms(data.identify, f.fit.residual), data)
+    return leaders_settled(
+        first,
+        lambda f: logarithms(data.identify, f.fit.residual),
+        lambda one, other: bool(alike[one, other]),
+        data,
+    )
 
 
 def _fitted(
@@ -214,11 +219,13 @@ def stepwise_selection(
     if last is not None:  # what an earlier round could not tell apart, a later cause may have
         rounds[last] = with_substitutes(rounds[last], data)
     found = [r.members for r in rounds if r.members]
+    judged_alone = len(found) == 1
     while (beyond := _implausible(found, current, data)) is not None:
         found = [m for m in found if m is not beyond]
         current = _with_these(found, baseline, current, data)
-    while len(found) > 1 and (fewer := _without_one(found, baseline, current, data)) is not None:
-        found, current = fewer
+        judged_alone = False
+    if not judged_alone:
+        found, current = _missed(found, baseline, current, data)
     return Outcome(current, rounds, found)
 
 
@@ -262,7 +269,10 @@ def without_unshifted(
             for trial in members:
                 trial.accepted, trial.reason = False, "beside other causes within what is declared"
             kept = [m for m in outcome.found if m is not members]
-            current = _with_these(kept, baseline, outcome.final, data) if kept else baseline
+            if not kept:
+                return Outcome(baseline, outcome.rounds, kept)
+            current = _with_these(kept, baseline, outcome.final, data)
+            kept, current = _missed(kept, baseline, current, data)
             return Outcome(current, outcome.rounds, kept)
     return None
 
@@ -283,6 +293,17 @@ def _with_these(
         nearby=final.slopes,
         discrepancy=data.allowed(data.identify),
     )
+
+
+def _missed(
+    found: list[list[Trial]], baseline: Fitted, current: Fitted, data: Data
+) -> tuple[list[list[Trial]], Fitted]:
+    """The causes that are missed where they are taken out, and their model. What a cause took beside another that is
+    gone, it need not take alone.
+    """
+    while found and (fewer := _without_one(found, baseline, current, data)) is not None:
+        found, current = fewer
+    return found, current
 
 
 def _without_one(
@@ -307,5 +328,7 @@ def _without_one(
             for now, then in counted
             for r in ROLES
         ):
+            for trial in members:
+                trial.accepted, trial.reason = False, "without it the model leaves hardly more"
             return kept, without
     return None
