@@ -242,7 +242,7 @@ def test_what_a_cause_took_beside_another_that_is_gone_it_has_to_take_alone(
 
     monkeypatch.setattr(stepwise, "_with_these", with_these)
     monkeypatch.setattr(
-        stepwise.Left,
+        Left,
         "by",
         lambda fitted, data: Left(
             np.full((4, 1), 1.0 + left_by[fitted]), np.full((4, 1), 1.0 + left_by[fitted])
@@ -257,6 +257,6 @@ def test_what_a_cause_took_beside_another_that_is_gone_it_has_to_take_alone(
             [[trial]], cast(Any, ""), cast(Any, name), cast(Any, None)
         )
         assert (found == [[trial]]) == stands
-        assert current == (name if stands else "")
+        assert cast(Any, current) == (name if stands else "")
         assert trial.accepted == stands
         assert bool(trial.reason) != stands
