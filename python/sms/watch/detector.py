@@ -90,7 +90,7 @@ class Detector:
     def _z(self, lag: int) -> Array:
         """(t,)"""
         b = self.baseline
-        last = list(self.sums)[-lag:]
+        last = self.last(lag)
         response, variance = (
             np.array([getattr(s, name) for s in last]) for name in ("response", "variance")
         )
@@ -101,11 +101,9 @@ class Detector:
         scale = np.sqrt(b.inflation * (v + k**2 * b.mean_variance))
         return np.asarray(np.where(scale > 0.0, clipped / np.maximum(scale, 1e-300), 0.0))
 
-    def stretch(self, lag: int) -> Sums:
-        """The sums of the last segments."""
-        last = list(self.sums)[-lag:]
-        parts = (sum(getattr(s, n) for s in last) for n in ("shift", "response", "variance", "cross"))
-        return Sums(last[0].begin, last[-1].end, len(last), *parts)
+    def last(self, lag: int) -> list[Sums]:
+        """Those of the last segments."""
+        return list(self.sums)[-lag:]
 
 
 def thresholds(baseline: Baseline, false_alarms_per_day: float) -> Array:
