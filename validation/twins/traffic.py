@@ -1,14 +1,15 @@
 """A bench that runs for hours and is logged, well at first; from some moment on it is another machine.
 
-Its owner moves it to and fro as he likes: ten seconds of one of the excitations, then of another, drawn anew each time,
-with a bridge between. The log comes in pieces, as a logger that begins a file every few minutes would write it; the machine
-runs on.
+Its owner moves it to and fro as he likes: ten seconds of one of the excitations, then of another, drawn anew each
+time, with a bridge between. The log comes in pieces, as a logger that begins a file every few minutes would write
+it; the machine runs on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,7 +45,9 @@ class RunningBench(BenchRig):
         super().__init__(rig.clock, rig.sample_step)
         self.state: Array | None = None
 
-    def measure(self, truth: Truth, plan: bench.Plan, reading_noise: dict[str, Array]) -> Measured:  # type: ignore[override]
+    def measure(
+        self, truth: Truth, plan: bench.Plan, reading_noise: Mapping[str, Array]
+    ) -> Measured:
         """As BenchRig has it, from where the last one ended."""
         error = truth.errors["extension"]
         count = plan.setpoint.size
@@ -87,7 +90,9 @@ class Motion:
             name = MOTIONS[int(self.rng.integers(len(MOTIONS)))]
             wave = excitation.MENU[name](sample_times(LENGTH, self.period), ROOM, self.rng)
             part = np.arange(1, round(BRIDGE / self.period)) / round(BRIDGE / self.period)
-            bridge = self.ahead[-1] + (wave[0] - self.ahead[-1]) * 0.5 * (1.0 - np.cos(np.pi * part))
+            bridge = self.ahead[-1] + (wave[0] - self.ahead[-1]) * 0.5 * (
+                1.0 - np.cos(np.pi * part)
+            )
             self.ahead = np.concatenate([self.ahead, bridge, wave])
         taken, self.ahead = self.ahead[: samples + 1], self.ahead[samples:]
         return taken
@@ -107,7 +112,7 @@ def traffic(
     edges = {0.0, seconds, *(c.time for c in changes)}
     edges |= set(np.arange(0.0, seconds, PIECE).tolist())
     ordered = sorted(edges)
-    for begin, end in zip(ordered, ordered[1:], strict=False):
+    for begin, end in pairwise(ordered):
         truth = next((c.truth for c in reversed(changes) if c.time <= begin), trial.truth)
         setpoint = 0.2 + motion.take(every(rig.clock.period, end - begin))
         ahead = excitation.feedforward(setpoint, rig.clock.period)

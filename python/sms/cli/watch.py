@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from sms.io.rig import Rig
-    from sms.watch.feed import Chunk, Feed
+    from sms.watch.feed import Chunk
     from sms.watch.watch import Status, Watch
 
 
@@ -27,8 +27,8 @@ def register(app: typer.Typer) -> None:
     app.command(
         epilog="Examples: **sms watch rig.toml --play day.csv** watches a complete record, as fast as it can; "
         "**sms watch rig.toml --follow log.csv --page 127.0.0.1:8765** a file while the logger writes it, with a live "
-        "page; **sms watch rig.toml --interface socketcan --channel can0** a bus, on which it only listens. docs/watch.md "
-        "leads through all of it with a virtual rig."
+        "page; **sms watch rig.toml --interface socketcan --channel can0** a bus, on which it only listens. "
+        "docs/watch.md leads through all of it."
     )(watch)
 
 
@@ -97,15 +97,17 @@ def watch(
         ),
     ] = None,
     seconds: Annotated[float | None, typer.Option(help="Stop after so many seconds.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No live view, only what happens.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", help="No live view, only what happens.")
+    ] = False,
 ) -> None:
     """Watch a machine: say within seconds that something has changed, since when and what fits, then diagnose it.
 
     The model of the rig file runs beside the machine. First it learns what the healthy machine leaves (**--learn**), so
     that a machine which the model fits only roughly raises no alarm. Then every five seconds each effect of the
     catalogue, each signal and each equation is asked whether it has changed, and since when (a generalised likelihood
-    ratio; the threshold follows from **--false-alarms-per-day**). An alarm names the effects that fit with a first guess
-    of their size; after **--diagnose-after** seconds a full diagnosis runs on the recorded rows.
+    ratio; the threshold follows from **--false-alarms-per-day**). An alarm names the effects that fit with a first
+    guess of their size; after **--diagnose-after** seconds a full diagnosis runs on the recorded rows.
 
     Gaps, restarts of the clock, silence and bus faults are states, and no alarms. What happened stands in
     *events.jsonl*, one JSON object a line.
@@ -119,11 +121,14 @@ def watch(
         if page is not None:
             from sms.watch.page import Page  # noqa: PLC0415 (an optional extra)
 
-            shown = Page.at(page, loaded.title)
+            shown = Page.at(page, loaded.title, out)
             stack.enter_context(shown)
             beside.show = shown.show
-            console.print(f"live page: {shown.address}", style="dim")
-        chunks, backlog, stop = _stream(stack, loaded, play, speed, follow, interface, channel, bitrate)
+            others = "; others on the network can read it" if shown.is_open_to_others else ""
+            console.print(f"live page: {shown.address}{others}", style="dim")
+        chunks, backlog, stop = _stream(
+            stack, loaded, play, speed, follow, interface, channel, bitrate
+        )
         if seconds is not None:
             timer = threading.Timer(seconds, stop)
             timer.daemon = True
@@ -253,10 +258,12 @@ def _live(console: Console, beside: Watch, quiet: bool) -> Iterator[None]:
 
 
 def _summary(console: Console, beside: Watch) -> None:
-    from sms.watch.terminal import hours  # noqa: PLC0415
     from sms.watch.segments import SEGMENT  # noqa: PLC0415
+    from sms.watch.terminal import hours  # noqa: PLC0415
 
     watched = hours(beside.segments * SEGMENT)
     count = len(beside.alarms)
-    console.print(f"watched {watched}: {count or 'no'} alarm{'s' if count != 1 else ''}", style="bold")
+    console.print(
+        f"watched {watched}: {count or 'no'} alarm{'s' if count != 1 else ''}", style="bold"
+    )
     console.print(f"written: {beside.log.path}", style="dim", soft_wrap=True)

@@ -1,8 +1,8 @@
 """An alarm: since when, where, and which effects fit how well, as a first guess.
 
-The guess is by one linear step: of each effect the size that the score says, and what of the squares of all tests together
-it takes. An effect far from its healthy value is another simulation, and two effects that look alike here are not told
-apart: that is what the diagnosis is for that follows.
+The guess is by one linear step: of each effect the size that the score says, and what of the squares of all tests
+together it takes. An effect far from its healthy value is another simulation, and two effects that look alike here
+are not told apart: that is what the diagnosis is for that follows.
 """
 
 from __future__ import annotations
@@ -142,7 +142,14 @@ class Judge:
             self._lag = lag
             at = look.lags.index(look.lag)
             z, threshold = float(look.z[at, look.test]), float(self.detector.thresholds[look.test])
-            first = (self.count, look.end, "effect" if test.effect else test.of, test.name, z, threshold)
+            first = (
+                self.count,
+                look.end,
+                "effect" if test.effect else test.of,
+                test.name,
+                z,
+                threshold,
+            )
         else:
             a = self.standing
             # Segments since the onset that was found first, as long as they are held.
@@ -167,8 +174,8 @@ class Judge:
 
 
 def best_lag(detector: Detector, look: Look) -> int:
-    """Segments since the onset that is most likely for the effect that fits best; of a change that no effect fits, for the
-    test that is highest."""
+    """Segments since the onset that is most likely for the effect that fits best; of a change that no effect fits,
+    for the test that is highest."""
     found = [(0.0, look.lag)]
     for lag in (n for n in LAGS if LEAST <= n <= len(detector.sums)):
         guesses = guesses_of(detector.baseline, detector.last(lag))

@@ -24,7 +24,7 @@ class Verdict:
     sentence: str
     folder: Path
     causes: tuple[str, ...] = ()
-    """Effects that it names."""
+    """Effects that it names, those of an ambiguity group one by one."""
 
     def to_dict(self) -> dict[str, Any]:
         """For the log."""
@@ -66,7 +66,8 @@ class Diagnosis:
             last = said[-1] if said else f"exit code {self._process.returncode}"
             return Verdict(self.alarm, "failed", f"the diagnosis ended: {last}", self.folder)
         answer = json.loads((self.folder / "diagnosis.json").read_text())
-        causes = tuple(_key(c) for c in answer.get("causes", []))
+        named = [m for c in answer.get("causes", []) for m in (c, *c.get("alternatives", []))]
+        causes = tuple(_key(m) for m in named)
         return Verdict(self.alarm, answer["verdict"], answer["sentence"], self.folder, causes)
 
     def wait(self) -> Verdict:

@@ -1,6 +1,7 @@
 """Whether something has changed, and since when: a generalised likelihood ratio over the onset.
 
-For each test (healthy.py) and each stretch of n segments up to now the size is estimated and compared with the healthy one:
+For each test (healthy.py) and each stretch of n segments up to now the size is estimated and compared with the
+healthy one:
 
     b = U / K - b_H,    z = b / error(b)
 
@@ -8,17 +9,18 @@ which is the square root of the likelihood ratio of a change of unknown size at 
 Detection of Abrupt Changes, 1993, chapter 2.4). Onsets are looked for in a window, on a grid that is coarser the
 further back (Lai, J. R. Statist. Soc. B 57, 1995): a change that lies between two of them loses a tenth of z.
 
-A segment counts at most `CLIPPED` of its standard deviations (Huber 1965): one window of which the search for an initial
-state went astray is no change of the machine. So an alarm takes at least as many segments as its threshold needs.
+A segment counts at most `CLIPPED` of its standard deviations (Huber 1965): one window of which the search for an
+initial state went astray is no change of the machine. So an alarm takes at least as many segments as its threshold
+needs.
 
 False alarms. Where nothing has changed, z is Student's with the freedom that the scatter of the healthy machine was
 told with. If every test at every onset in every segment exceeds its threshold with a chance of
 
     rate / (segments in a day * onsets * tests)
 
-then at most `rate` of them do so a day, however they depend on each other (Boole's inequality): that is a bound on the
-number of false alarms, and a cautious one. It rests on healthy stretches that the machine was watched in while it was
-learned: another motion, another load or a cold morning, of which nothing was learned, are a change.
+then at most `rate` of them do so a day, however they depend on each other (Boole's inequality): that is a bound on
+the number of false alarms, and a cautious one. It rests on healthy stretches that the machine was watched in while
+it was learned: another motion, another load or a cold morning, of which nothing was learned, are a change.
 """
 
 from __future__ import annotations
@@ -85,7 +87,9 @@ class Detector:
         z = np.array([self._z(n) for n in lags])
         low, high = self._signs
         right = np.where(z < 0.0, low, high)
-        return Look(sums.begin, sums.end, z, np.where(right, np.abs(z) / self.thresholds, 0.0), lags)
+        return Look(
+            sums.begin, sums.end, z, np.where(right, np.abs(z) / self.thresholds, 0.0), lags
+        )
 
     def _z(self, lag: int) -> Array:
         """(t,)"""

@@ -1,7 +1,7 @@
 """A bounded queue between what brings rows and the watch.
 
-A file that is played waits for the watch. A machine does not: where the watch falls behind by more than the queue holds,
-the oldest rows are lost, counted, and the stream has a gap there. Memory stays what it is.
+A file that is played waits for the watch. A machine does not: where the watch falls behind by more than the queue
+holds, the oldest rows are lost, counted, and the stream has a gap there. Memory stays what it is.
 """
 
 from __future__ import annotations

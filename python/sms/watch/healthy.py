@@ -1,16 +1,17 @@
 """The machine when it is well: its numbers, and how its scores scatter.
 
-First the model is fitted, as to the reference records of a diagnosis (diagnosis/reference.py): numbers, how nearly they are
-known, and the discrepancy that is left. Then every healthy segment is scored there. Of the effects' scores goes what the
-parameters that may move can imitate,
+First the model is fitted, as to the reference records of a diagnosis (diagnosis/reference.py): numbers, how nearly
+they are known, and the discrepancy that is left. Then every healthy segment is scored there. Of the effects' scores
+goes what the parameters that may move can imitate,
 
     U = -(score_e - A score_n),   A = M_en (M_nn + P / n)^-1
 
-M is the mean information of a segment, P what is known of the parameters (a joint covariance from the healthy records, and a
-change from day to day), n the segments of a minute. An effect of size b adds K b to U, K = M_ee - A M_ne of the very
-segments; white innovations scatter by V = M_ee - 2 A M_ne + A M_nn A'. A machine that the model fits roughly is not white:
-its U / K has a mean b_H, and U - b_H K a variance c V, with c the largest over blocks of one to eight segments, 5 to 40 s.
-Where a block of eight explains it, the variance is known only as well as so many blocks tell (`Baseline.freedom`).
+M is the mean information of a segment, P what is known of the parameters (a joint covariance from the healthy
+records, and a change from day to day), n the segments of a minute. An effect of size b adds K b to U, K = M_ee - A
+M_ne of the very segments; white innovations scatter by V = M_ee - 2 A M_ne + A M_nn A'. A machine that the model
+fits roughly is not white: its U / K has a mean b_H, and U - b_H K a variance c V, with c the largest over blocks of
+one to eight segments, 5 to 40 s. Where a block of eight explains it, the variance is known only as well as so many
+blocks tell (`Baseline.freedom`).
 
 The energies of signals and equations are taken as further tests with K = V = 1 a segment.
 """
@@ -22,7 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sms.arrays import Array
+from sms.arrays import Array, Index
 from sms.callbacks import Progress
 from sms.diagnosis.effects.catalogue import Effect, effects_of
 from sms.diagnosis.hypothesis import Data, Hypothesis, baseline_hypothesis, weights_of
@@ -41,8 +42,8 @@ from sms.watch.innovations import Innovations, Scores, as_watched, run_of
 from sms.watch.segments import SEGMENT, Segment
 
 BLOCKS = (1, 2, 4, 8)
-"""Segments in a row over which scatter is measured: of a signal that wanders for a minute it would still be too small,
-and of longer blocks ten minutes hold too few."""
+"""Segments in a row over which scatter is measured: of a signal that wanders for a minute it would still be too
+small, and of longer blocks ten minutes hold too few."""
 LEAST = 24
 """Healthy segments at least: three of the longest blocks. Two minutes."""
 FIT_LENGTH = 60.0
@@ -91,7 +92,7 @@ class Baseline:
 
     innovations: Innovations
     tests: Sequence[Test]
-    kept: Array
+    kept: Index
     """(m,) places of the effects among those of the innovations."""
     imitated: Array
     """(m, k): A"""
@@ -121,7 +122,7 @@ class Baseline:
         return np.asarray(np.sqrt(self.inflation * (own + self.mean_variance)))
 
 
-def _sums(scores: Scores, k: int, kept: Array, imitated: Array) -> Sums:
+def _sums(scores: Scores, k: int, kept: Index, imitated: Array) -> Sums:
     place = k + kept
     score_e, score_n = scores.score[place], scores.score[:k]
     m_ee = scores.information[np.ix_(place, place)]
@@ -218,7 +219,7 @@ def baseline_of(
         )
     mean = np.mean([s.information for s in scores], axis=0)
     imitated = imitated_by(machine, innovations.effects, mean)
-    every = np.arange(len(innovations.effects))
+    every = np.arange(len(innovations.effects), dtype=np.int64)
     k = len(innovations.names)
     whole = [_sums(s, k, every, imitated) for s in scores]
     tests, kept, reasons = _tests(innovations, mean, whole)
@@ -265,8 +266,9 @@ def imitated_by(machine: Hypothesis, effects: Sequence[Effect], mean: Array) -> 
 
 
 def scatter(deviation: Array, variance: Array) -> tuple[Array, Array]:
-    """By how much deviations (segments, t) scatter more than white ones of this variance (segments, t), and the freedom
-    with which that is known: the largest over blocks of BLOCKS segments. Never below 1 of what has a variance of its own.
+    """By how much deviations (segments, t) scatter more than white ones of this variance (segments, t), and the
+    freedom with which that is known: the largest over blocks of BLOCKS segments. Never below 1 of what has a
+    variance of its own.
     """
     best, freedom = np.zeros(deviation.shape[1]), np.ones(deviation.shape[1])
     for length in BLOCKS:
@@ -302,9 +304,7 @@ def _tests(
             reasons.append(f"{effect.key}: no trace in these signals")
         elif response[row] <= 1e-6 * raw[row]:
             reasons.append(f"{effect.key}: undone by parameters that may move")
-        elif (
-            DETECTION * np.sqrt(variance[row] / MINUTE) > max(-low, high) * response[row]
-        ):
+        elif DETECTION * np.sqrt(variance[row] / MINUTE) > max(-low, high) * response[row]:
             reasons.append(f"{effect.key}: seen within a minute only beyond what is plausible")
         else:
             kept.append(row)

@@ -1,9 +1,9 @@
 """What a segment says of every parameter and effect: scores and their information, and what is left of each signal.
 
-A segment is held against the model as a record is in a diagnosis (estimation/windows.py): windows of a second from the
-initial states that fit them best, residuals in units of the noise, whitened with the discrepancy that the healthy machine
-leaves. With J the sensitivities of these innovations e to the numbers that may move and to the effects, less what the
-initial states can imitate,
+A segment is held against the model as a record is in a diagnosis (estimation/windows.py): windows of a second from
+the initial states that fit them best, residuals in units of the noise, whitened with the discrepancy that the
+healthy machine leaves. With J the sensitivities of these innovations e to the numbers that may move and to the
+effects, less what the initial states can imitate,
 
     score        J'e          one number each
     information  J'J

@@ -21,7 +21,9 @@ class Recorder:
 
     def __init__(self, folder: Path, hours: float) -> None:
         if not hours > 0.0:
-            raise InputError(f"--keep {hours:g}: how many hours of rows are kept; write more than 0")
+            raise InputError(
+                f"--keep {hours:g}: how many hours of rows are kept; write more than 0"
+            )
         self.folder = folder
         self.most = max(1, int(np.ceil(hours * 3600.0 / PIECE)))
         """Files."""

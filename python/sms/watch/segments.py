@@ -109,7 +109,9 @@ class Segmenter:
     def _append(self, rows: Mapping[str, Array]) -> Iterator[Segment]:
         old = self._held
         held = {n: np.concatenate([old[n], v]) if old else v for n, v in rows.items()}
-        fresh = np.diff(held["time"], prepend=-np.inf) > 0.0  # a row that is there twice counts once
+        fresh = (
+            np.diff(held["time"], prepend=-np.inf) > 0.0
+        )  # a row that is there twice counts once
         self._held = held if fresh.all() else {n: v[fresh] for n, v in held.items()}
         if self.step is None:
             self._measure_step(self._held["time"])

@@ -96,7 +96,9 @@ class TextLog:
         try:
             self._opened = file.open("r", encoding="utf-8-sig", errors="replace", newline=None)
         except OSError as problem:
-            raise InputError(f"{file}: cannot be read ({problem.strerror}); check the file") from None
+            raise InputError(
+                f"{file}: cannot be read ({problem.strerror}); check the file"
+            ) from None
 
     def __enter__(self) -> TextLog:
         return self
@@ -139,7 +141,9 @@ class TextLog:
 
     def _table(self, text: str) -> Table:
         layout = self.rig.layout
-        return table_of_text(self.path, (self._header or "") + text, layout.delimiter, layout.columns)
+        return table_of_text(
+            self.path, (self._header or "") + text, layout.delimiter, layout.columns
+        )
 
     def _parsed(self, text: str) -> dict[str, Array]:
         return dict(record_of(self.rig, self._source, self._table(text)).signals)
@@ -173,7 +177,9 @@ def follow(rig: Rig, file: Path, feed: Feed, stop: threading.Event) -> None:
     InputError, before anything is put, for what is no table in text.
     """
     if not file.is_file():
-        raise InputError(f"{file}: there is no such file yet; start the logger first, or check the path")
+        raise InputError(
+            f"{file}: there is no such file yet; start the logger first, or check the path"
+        )
     if not is_text_table(file) or is_packed(file):
         raise InputError(
             f"{file}: only a table in text ({', '.join(TEXT_ENDINGS)}) can be followed while it grows; "

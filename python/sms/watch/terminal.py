@@ -32,7 +32,10 @@ class Terminal:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         if self._live is not None:
             self._live.stop()
@@ -45,7 +48,11 @@ class Terminal:
     def show(self, status: Status) -> None:
         """The state as it is now."""
         if status.phase == "watching":
-            self._once(("learned", 0), f"learned from {hours(status.learned)} of the healthy machine", "dim")
+            self._once(
+                ("learned", 0),
+                f"learned from {hours(status.learned)} of the healthy machine",
+                "dim",
+            )
         if status.alarm is not None:
             self._once(("alarm", status.alarm.number), status.alarm.sentence, "bold red")
         if status.verdict is not None:

@@ -1,7 +1,7 @@
 """The watch: rows in, states and alarms out.
 
-    learning   until so many seconds of the healthy machine are there (its reference records count), then fitted
-    watching   segment by segment
+learning   until so many seconds of the healthy machine are there (its reference records count), then fitted
+watching   segment by segment
 """
 
 from __future__ import annotations
@@ -84,6 +84,8 @@ class Status:
     lost: int
     """Rows that were dropped."""
     late: bool
+    tests: Sequence[str] = ()
+    """Names of what is looked at, in the order of a look."""
     look: Look | None = None
     alarm: Alarm | None = None
     verdict: Verdict | None = None
@@ -101,6 +103,8 @@ class Watch:
     recorder: Recorder | None = None
     on_alarm: OnAlarm | None = None
     show: Callable[[Status], None] = lambda status: None
+    on_look: Callable[[Look, Alarm | None], None] = lambda look, alarm: None
+    """Called for each segment, with the alarm that stands."""
     progress: Progress = lambda text, done: None
     baseline: Baseline | None = None
     verdicts: list[Verdict] = field(default_factory=list)
@@ -127,7 +131,9 @@ class Watch:
 
     # ---- rows ------------------------------------------------------------------------------------
 
-    def run(self, chunks: Iterable[Chunk], backlog: Callable[[], tuple[int, int]] = lambda: (0, 0)) -> None:
+    def run(
+        self, chunks: Iterable[Chunk], backlog: Callable[[], tuple[int, int]] = lambda: (0, 0)
+    ) -> None:
         """Watch until the stream ends. backlog: rows that wait, and rows that were lost.
 
         InputError where it ends before the healthy machine is learned.
@@ -198,6 +204,7 @@ class Watch:
         before = self.judge.standing
         self.look = self.judge.detector.push(self.baseline.sums(scores))
         after = self.judge.judge(self.look)
+        self.on_look(self.look, after)
         if before is None and after is not None:
             self.alarms.append(after)
             self._tell("alarm", after.to_dict())
@@ -289,6 +296,7 @@ class Watch:
             self._waiting,
             self._lost,
             self._waiting * step > LATE,
+            () if self.baseline is None else [t.name for t in self.baseline.tests],
             self.look,
             None if self.judge is None else self.judge.standing,
             self.verdicts[-1] if self.verdicts else None,
@@ -297,8 +305,3 @@ class Watch:
 
     def _show(self) -> None:
         self.show(self.status)
-
-
-def counted(alarms: Sequence[Alarm], since: float) -> int:
-    """Alarms that were raised from a time on."""
-    return sum(a.raised >= since for a in alarms)
