@@ -16,8 +16,8 @@ it; nothing that shows can hold up the watch.
 Three things are as they are for a reason:
 
 - Everything is judged against what the same machine left when it was well, and by how much that scattered over
-  stretches of up to forty seconds, never against the declared noise. A machine that the model fits roughly has large scores when
-  it is well, and only what goes beyond them counts.
+  stretches of up to forty seconds, never against the declared noise. A machine that the model fits roughly has
+  large scores when it is well, and only what goes beyond them counts.
 - For what no effect explains, energies of the innovations go through the same likelihood ratio as the effects, not
   through a CUSUM: that needs the size of the change beforehand, and a second threshold with an origin of its own.
 - The threshold is a tail of Student's distribution divided among all that is looked at (detector.py), not a quantile

@@ -2,8 +2,8 @@
 
 A log is put on one time base when it is complete (io/can_logs.py); here the same is done running. Rows stand at the
 frames of one message, the one that comes most often and has the sender's clock; signals of the others are led onto
-these times by straight lines between their frames, so a row waits until each has a newer frame. A message that stays away for
-a second holds up nobody: its signals then have no value, which is a state of the stream.
+these times by straight lines between their frames, so a row waits until each has a newer frame. A message that
+stays away for a second holds up nobody: its signals then have no value, which is a state of the stream.
 """
 
 from __future__ import annotations

@@ -71,19 +71,16 @@ class Test:
 
 @dataclass(frozen=True, eq=False)
 class Sums:
-    """Of one segment, or of several in a row. m effects, then the energies; t = m + energies."""
+    """Of one segment: what the tests go by, t = effects, then energies."""
 
     begin: float
     end: float
-    count: int
     shift: Array
     """(t,): U"""
     response: Array
     """(t,): K"""
     variance: Array
     """(t,): V"""
-    cross: Array
-    """(m, m): row by row, what each effect's U becomes with a unit of every effect."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,18 +125,16 @@ def _sums(scores: Scores, k: int, kept: Index, imitated: Array) -> Sums:
     m_ee = scores.information[np.ix_(place, place)]
     m_en = scores.information[np.ix_(place, np.arange(k))]
     m_nn = scores.information[:k, :k]
-    cross = m_ee - imitated @ m_en.T
-    variance = np.diag(m_ee) - 2.0 * np.sum(imitated * m_en, axis=1)
-    variance = variance + np.einsum("ik,kl,il->i", imitated, m_nn, imitated)
+    undone = np.sum(imitated * m_en, axis=1)
+    response = np.diag(m_ee) - undone
+    variance = response - undone + np.einsum("ik,kl,il->i", imitated, m_nn, imitated)
     known = np.isfinite(scores.energy).astype(np.float64)
     return Sums(
         scores.begin,
         scores.end,
-        1,
         np.concatenate([imitated @ score_n - score_e, np.nan_to_num(scores.energy)]),
-        np.concatenate([np.diag(cross), known]),
+        np.concatenate([response, known]),
         np.concatenate([np.maximum(variance, 0.0), known]),
-        cross,
     )
 
 

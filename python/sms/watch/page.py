@@ -1,8 +1,8 @@
 """The live page: what the watch sees, pushed to browsers (server-sent events), on loopback by default.
 
 The server has a thread and an event loop of its own. The watch hands a frame over and goes on; each browser has a queue
-of a few frames, of which the oldest is lost when it is full. So a page that is slow, or asleep, loses frames and holds up
-nobody.
+of a few frames, of which the oldest is lost when it is full. So a page that is slow, or asleep, loses frames and holds
+up nobody.
 """
 
 from __future__ import annotations
