@@ -19,7 +19,9 @@ import pandas as pd
 from cantools.database import DecodeError
 
 from sms.arrays import Array
+from sms.errors import InputError
 from sms.io.can_frames import CLOCK, TIME, Channel, find_channels, load_dbc, no_value
+from sms.io.can_logs import CLOCK_JUMP
 from sms.io.records import record_of
 from sms.io.rig import RecordSource, Rig
 from sms.io.table import Table
@@ -59,11 +61,13 @@ class _Series:
 
 
 class Clock:
-    """The sender's clock, running on: its readings wrap."""
+    """The sender's clock, running on: its readings wrap, and where the sender was started again it goes on by the time
+    at which frames were seen."""
 
     def __init__(self) -> None:
         self._seen, self._reading = 0.0, 0.0
         self._begun = False
+        self.restarts = 0
 
     def reading(self, stamp: float, wrap: float, seen: float) -> float:
         """s since the first stamp, of a stamp that a frame carries which was seen at a time."""
@@ -73,7 +77,11 @@ class Clock:
             return 0.0
         expected = self._reading + (seen - self._seen)
         plain = stamp - self._origin
-        self._reading = plain + wrap * round((expected - plain) / wrap)
+        reading = plain + wrap * round((expected - plain) / wrap)
+        if abs(reading - expected) > CLOCK_JUMP:
+            self.restarts += 1
+            self._origin, reading = stamp - expected, expected
+        self._reading = reading
         self._seen = seen
         return self._reading
 
@@ -89,12 +97,21 @@ class Decoder:
 
     def __init__(self, rig: Rig) -> None:
         self._rig = rig
+        self.restarts = 0
+        """Of the sender's clock, that were seen."""
         self._source = RecordSource("bus", rig.path, "identify")
         database = load_dbc(rig.layout.dbc)
         wanted = {s.column: s.optional for s in rig.signals.values()}
         self.channels: Mapping[str, Channel] = find_channels(rig.path, database, wanted)
         self._messages = {c.message.frame_id: c.message for c in self.channels.values()}
         self._series = {column: _Series() for column in self.channels}
+        self._of_message: dict[int, list[tuple[str, Channel]]] = {}
+        for column, channel in self.channels.items():
+            self._of_message.setdefault(channel.message.frame_id, []).append((column, channel))
+        self._clocks = {
+            number: next((s for s in m.signals if s.name == CLOCK), None)
+            for number, m in self._messages.items()
+        }
         self._clock = Clock()
         self._counts: Counter[int] = Counter()
         self._base: int | None = None
@@ -116,15 +133,21 @@ class Decoder:
             return None
         assert isinstance(told, dict)
         values = {n: float(v) for n, v in told.items() if isinstance(v, int | float)}
-        clock = next((s for s in described.signals if s.name == CLOCK), None)
+        clock = self._clocks[number]
         if clock is not None and CLOCK in values:
             wrap = 2.0**clock.length * float(clock.scale)
             time = self._clock.reading(values[CLOCK], wrap, frame.timestamp)
         else:
             time = self._clock.now(frame.timestamp)
-        for column, channel in self.channels.items():
+        if self._clock.restarts > self.restarts:
+            self.restarts = self._clock.restarts
+            self._due.clear()
+            for series in self._series.values():
+                series.times.clear()
+                series.values.clear()
+        for column, channel in self._of_message[number]:
             name = channel.signal.name
-            if channel.message.frame_id == number and name in values:
+            if name in values:
                 value = values[name]
                 series = self._series[column]
                 if not series.times or time > series.times[-1]:
@@ -141,9 +164,11 @@ class Decoder:
         return self._rows(time)
 
     def _is_stamped(self, number: int) -> bool:
-        return any(s.name == CLOCK for s in self._messages[number].signals)
+        return self._clocks[number] is not None
 
     def _rows(self, now: float) -> dict[str, Array] | None:
+        if not self._due or now - self._due[0] < TOGETHER:
+            return None
         newest = [
             s.times[-1]
             for column, s in self._series.items()
@@ -181,7 +206,10 @@ def decoded(
                 yield Chunk(condition="bus fault", detail=f"{faults} error frames")
                 faults, said = 0, frame.timestamp
             continue
+        restarts = decoder.restarts
         rows = decoder.take(frame)
+        if decoder.restarts > restarts:
+            yield Chunk(condition="restarted")
         if rows is not None:
             yield Chunk(rows)
 
@@ -198,8 +226,12 @@ def listen(
 
     InputError, before anything is put, for a bus that cannot be opened or a signal that its definition has not.
     """
-    decoder = Decoder(rig)
     bus = open_bus(BusAddress(interface, channel, bitrate))
+    try:
+        decoder = Decoder(rig)
+    except InputError:
+        bus.shutdown()
+        raise
     threading.Thread(target=_listened, args=(bus, decoder, feed, stop), daemon=True).start()
 
 

@@ -19,7 +19,7 @@ MOST_ROWS = 200_000
 SILENT = 2.0
 """s without a row, after which the stream is said to be silent."""
 
-Condition = Literal["running", "silent", "bus fault", "ended"]
+Condition = Literal["running", "silent", "restarted", "bus fault", "ended"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,6 +61,10 @@ class Segmenter:
         self._held: dict[str, Array] = {}
         self._time: float | None = None
 
+    def cut(self) -> None:
+        """What comes does not follow on what came."""
+        self._held, self._time = {}, None
+
     def push(self, rows: Mapping[str, Array]) -> Iterator[Segment | Interruption]:
         """The segments and interruptions that these rows, signal -> (n,), bring about, in their order."""
         time = np.asarray(rows["time"], dtype=np.float64)

@@ -173,6 +173,8 @@ class Watch:
         self._show()
 
     def _state(self, condition: str, detail: str) -> None:
+        if condition == "restarted":
+            self.segmenter.cut()
         self.condition = f"{condition}: {detail}" if detail else condition
         self.log.write("state", {"state": condition, "detail": detail, "time_s": self.time})
         self._show()
