@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from sms.cli.can_bus import DEFAULT_BITRATE, Bitrate, Channel
+from sms.cli.can_bus import DEFAULT_BITRATE, Bitrate, Channel, ended_like_ctrl_c
 from sms.errors import InputError
 
 if TYPE_CHECKING:
@@ -135,13 +135,12 @@ def watch(
             timer.start()
             stack.callback(timer.cancel)
         stack.enter_context(_one_core())
-        with _live(console, beside, quiet):
-            try:
+        try:
+            with ended_like_ctrl_c(), _live(console, beside, quiet):
                 beside.run(chunks, backlog)
-            except KeyboardInterrupt:
-                stop()
-        with console.status("waiting for the diagnosis") if not quiet else _nothing():
-            beside.finish()
+                beside.finish()
+        except KeyboardInterrupt:
+            stop()
         _summary(console, beside)
 
 
@@ -234,11 +233,6 @@ def _one_core() -> Iterator[None]:
         return
     with threadpool_limits(1):
         yield
-
-
-@contextmanager
-def _nothing() -> Iterator[None]:
-    yield
 
 
 @contextmanager

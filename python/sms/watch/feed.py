@@ -75,16 +75,9 @@ class Feed:
             return chunk
 
     def chunks(self) -> Iterator[Chunk]:
-        """All of them until the stream ends; a chunk without rows says when it falls silent."""
-        silent = False
+        """All of them until the stream ends; while none comes, every two seconds one that says so."""
         while True:
-            chunk = self.take(SILENT)
-            if chunk is None:
-                if not silent:
-                    yield Chunk(condition="silent")
-                silent = True
-                continue
-            silent = silent and not chunk.count
+            chunk = self.take(SILENT) or Chunk(condition="silent")
             yield chunk
             if chunk.condition == "ended":
                 return

@@ -33,6 +33,8 @@ from sms.watch.segments import SEGMENT, Interruption, Segment, Segmenter
 Phase = Literal["learning", "watching"]
 KEPT_HEALTHY = 24
 """Segments of the healthy machine that are held for diagnoses: two minutes, evenly chosen."""
+LONGEST = 7200.0
+"""s that can be learned from: an hour of a bench at 1 kHz takes 200 MB."""
 LATE = 4 * SEGMENT
 """s that wait in the queue, from where on the watch is said to be late."""
 
@@ -53,6 +55,10 @@ class Options:
             raise InputError(
                 f"--learn {self.learn:g}: {LEAST * SEGMENT:g} s at least tell how the readings of a healthy machine "
                 "scatter; ten minutes (600) are good"
+            )
+        if self.learn > LONGEST:
+            raise InputError(
+                f"--learn {self.learn:g}: rows that are learned from are held in memory; write {LONGEST:g} at the most"
             )
         if not 0.0 < self.false_alarms_per_day <= 100.0:
             raise InputError(
@@ -136,7 +142,7 @@ class Watch:
     ) -> None:
         """Watch until the stream ends. backlog: rows that wait, and rows that were lost.
 
-        InputError where it ends before the healthy machine is learned.
+        InputError where it ends before the healthy machine is learned, or since it cannot be read.
         """
         if self.learned >= self.options.learn:
             self._learn()
@@ -149,6 +155,8 @@ class Watch:
                 self.push(chunk.rows)
                 continue
             self._state(chunk.condition, chunk.detail)
+            if chunk.condition == "ended" and chunk.detail:
+                raise InputError(chunk.detail)
         if self.recorder is not None:
             self.recorder.flush()
         if self.baseline is None:
@@ -175,8 +183,10 @@ class Watch:
     def _state(self, condition: str, detail: str) -> None:
         if condition == "restarted":
             self.segmenter.cut()
-        self.condition = f"{condition}: {detail}" if detail else condition
-        self.log.write("state", {"state": condition, "detail": detail, "time_s": self.time})
+        before, self.condition = self.condition, f"{condition}: {detail}" if detail else condition
+        if self.condition != before:
+            self.log.write("state", {"state": condition, "detail": detail, "time_s": self.time})
+        self._collect()
         self._show()
 
     def _interrupted(self, found: Interruption) -> None:
