@@ -173,6 +173,25 @@ def test_a_queue_holds_no_more_than_it_may_and_counts_what_it_lost() -> None:
     assert [f.cause for f in found if isinstance(f, Interruption)] == ["gap"]
 
 
+def test_a_file_waits_for_room_and_loses_nothing() -> None:
+    feed, stop = Feed(most_rows=1000), threading.Event()
+
+    def write() -> None:
+        for k in range(30):
+            feed.put_when_there_is_room(Chunk(rows(k, 1.0)), stop)
+        feed.put(Chunk(condition="ended"))
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    begins = []
+    for chunk in feed.chunks():
+        assert feed.waiting <= 1000
+        begins += [float(chunk.rows["time"][0])] if chunk.count else []
+    writer.join()
+    assert begins == [float(k) for k in range(30)]
+    assert feed.lost == 0
+
+
 def test_a_silent_stream_says_so_until_rows_come() -> None:
     feed = Feed()
     chunks = feed.chunks()

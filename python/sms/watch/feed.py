@@ -1,6 +1,6 @@
 """A bounded queue between what brings rows and the watch.
 
-A file that is played waits for the watch. A machine does not: where the watch falls behind by more than the queue
+A file waits for the watch, played or growing. A bus does not: where the watch falls behind by more than the queue
 holds, the oldest rows are lost, counted, and the stream has a gap there. Memory stays what it is.
 """
 
@@ -61,7 +61,16 @@ class Feed:
                 oldest = self._chunks.popleft()
                 self._rows -= oldest.count
                 self.lost += oldest.count
-            self._changed.notify()
+            self._changed.notify_all()
+
+    def put_when_there_is_room(self, chunk: Chunk, stop: threading.Event) -> None:
+        """For what can wait: nothing is lost. Gives up when `stop` is set."""
+        with self._changed:
+            while self._rows and self._rows + chunk.count > self.most_rows:
+                if stop.is_set():
+                    return
+                self._changed.wait(0.2)
+        self.put(chunk)
 
     def take(self, seconds: float) -> Chunk | None:
         """The oldest chunk; None where none comes within so many seconds."""
@@ -72,6 +81,7 @@ class Feed:
                 return None
             chunk = self._chunks.popleft()
             self._rows -= chunk.count
+            self._changed.notify_all()
             return chunk
 
     def chunks(self) -> Iterator[Chunk]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shlex
 import shutil
@@ -29,14 +28,12 @@ class EventLog:
                 f"{path}: cannot be written ({problem.strerror}); choose another --out"
             ) from None
 
-    def write(self, event: str, content: Mapping[str, Any]) -> dict[str, Any]:
-        """Append one event; what was written."""
+    def write(self, event: str, content: Mapping[str, Any]) -> str:
+        """Append one event; the line."""
         now = datetime.now(UTC).isoformat(timespec="milliseconds")
-        told = {"event": event, "written": now, **content}
-        line = json_line("watch", told)
+        line = json_line("watch", {"event": event, "written": now, **content})
         os.write(self._file, line.encode())
-        found: dict[str, Any] = json.loads(line)
-        return found
+        return line
 
     def close(self) -> None:
         """No more is written."""
@@ -61,15 +58,15 @@ class OnAlarm:
             )
         self._running: list[subprocess.Popen[bytes]] = []
 
-    def __call__(self, event: Mapping[str, Any]) -> str | None:
-        """Start it; why not, in a sentence."""
+    def __call__(self, event: str) -> str | None:
+        """Start it with a line of the log; why not, in a sentence."""
         self._running = [p for p in self._running if p.poll() is None]
         if len(self._running) >= self.MOST:
             return f"--on-alarm: {self.MOST} of them run still, so it was not started"
         try:
             self._running.append(
                 subprocess.Popen(
-                    [*self.words, json.dumps(event)],
+                    [*self.words, event.rstrip("\n")],
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,
                     stderr=subprocess.DEVNULL,

@@ -194,7 +194,7 @@ def _followed(rig: Rig, file: Path, feed: Feed, stop: threading.Event) -> None:
         while not stop.is_set():
             rows = log.read()
             if rows is not None:
-                feed.put(Chunk(rows))
+                feed.put_when_there_is_room(Chunk(rows), stop)
             elif log.was_cut:
                 log.__exit__()
                 log = TextLog(rig, file)
