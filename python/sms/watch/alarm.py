@@ -23,6 +23,8 @@ from sms.watch.healthy import Baseline, Sums
 SHOWN = 5
 LEAST = 2
 """Segments that a guess takes: one alone does not show whether an effect has the same size in the next."""
+ENDS = 0.75
+"""Of the threshold, below which an alarm ends: one that is about there is not raised again and again. Judgement."""
 SEEN = DETECTION
 """Standard errors."""
 FITS = 0.5
@@ -121,8 +123,8 @@ class Alarm:
 class Judge:
     """Raises an alarm, refines what it says while it stands, and lets it end.
 
-    It stands until no onset of any test exceeds its threshold: after a repair the longest stretches hold what was
-    wrong for five minutes more.
+    It stands until every test at every onset is well below its threshold again: after a repair the longest stretches
+    hold what was wrong for five minutes more.
     """
 
     detector: Detector
@@ -132,7 +134,7 @@ class Judge:
 
     def judge(self, look: Look) -> Alarm | None:
         """The alarm that stands after this look."""
-        if look.highest < 1.0:
+        if look.highest < (1.0 if self.standing is None else ENDS):
             self.standing = None
             return None
         test = self.detector.baseline.tests[look.test]

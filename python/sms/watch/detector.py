@@ -9,9 +9,9 @@ which is the square root of the likelihood ratio of a change of unknown size at 
 Detection of Abrupt Changes, 1993, chapter 2.4). Onsets are looked for in a window, on a grid that is coarser the
 further back (Lai, J. R. Statist. Soc. B 57, 1995): a change that lies between two of them loses a tenth of z.
 
-A segment counts at most `CLIPPED` of its standard deviations (Huber 1965): one window of which the search for an
-initial state went astray is no change of the machine. So an alarm takes at least as many segments as its threshold
-needs.
+A segment counts at most half the threshold, in its standard deviations (Huber 1965), so an alarm takes four of them,
+20 s: a window of which the search for an initial state went astray, or one motion that the model does worse than
+others, is no change of the machine.
 
 False alarms. Where nothing has changed, z is Student's with the freedom that the scatter of the healthy machine was
 told with. If every test at every onset in every segment exceeds its threshold with a chance of
@@ -37,7 +37,8 @@ from sms.watch.segments import SEGMENT
 
 LAGS = (1, 2, 3, 4, 6, 8, 12, 18, 27, 40, 60)
 """Segments since the onset: up to five minutes."""
-CLIPPED = 4.0
+FEWEST = 4
+"""Segments that an alarm takes at least: longer than one motion of ten seconds. Judgement."""
 DAY = 86400.0 / SEGMENT
 """Segments."""
 
@@ -73,10 +74,15 @@ class Look:
 class Detector:
     """Looks at segment after segment. It holds the sums of as many as the longest lag has."""
 
-    def __init__(self, baseline: Baseline, false_alarms_per_day: float) -> None:
+    def __init__(
+        self, baseline: Baseline, false_alarms_per_day: float, fewest: int = FEWEST
+    ) -> None:
+        """fewest: segments that an alarm takes; 0: a segment counts whole."""
         self.baseline = baseline
         self.rate = false_alarms_per_day
         self.thresholds = thresholds(baseline, false_alarms_per_day)
+        self.most = self.thresholds / np.sqrt(fewest) if fewest else np.inf * self.thresholds
+        """(t,): standard deviations that a segment counts."""
         self.sums: deque[Sums] = deque(maxlen=LAGS[-1])
         self._signs = np.array([[t.low, t.high] for t in baseline.tests]).T
 
@@ -99,7 +105,7 @@ class Detector:
             np.array([getattr(s, name) for s in last]) for name in ("response", "variance")
         )
         deviation = np.array([s.shift for s in last]) - b.mean * response
-        room = CLIPPED * np.sqrt(b.inflation * variance)
+        room = self.most * np.sqrt(b.inflation * variance)
         clipped = np.clip(deviation, -room, room).sum(axis=0)
         k, v = response.sum(axis=0), variance.sum(axis=0)
         scale = np.sqrt(b.inflation * (v + k**2 * b.mean_variance))
