@@ -23,9 +23,9 @@ from validation.twins.traffic import Change, traffic
 
 PICTURE = Path(__file__).resolve().parents[1] / "docs" / "watch.png"
 SIZE = 1000, 900
-SEED, LEAK = 2, 7e-10
+SEED, LEAK = 1, 7e-10
 """Of the bench; kg/(s Pa)."""
-LEARN, ONSET, END = 300.0, 600.0, 840.0
+LEARN, ONSET, END = 240.0, 480.0, 660.0
 """s"""
 PATIENCE = 900.0
 """s until the diagnosis must be there."""
