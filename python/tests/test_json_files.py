@@ -32,6 +32,7 @@ ELSEWHERE = {
     "python/sms/report/page.py": "data inside a page",
     "python/sms/schemas/__init__.py": "a JSON schema, which says by $schema what it is",
     "python/sms/sweep/plan.py": "a digest",
+    "python/sms/watch/page.py": "frames to a page",
 }
 
 

@@ -23,6 +23,7 @@ FORBIDDEN = {
     "sweep": ("report", "cli"),
     "validation": ("report", "cli"),
     "history": ("report", "cli"),
+    "watch": ("report", "cli"),
     "report": ("cli",),
     "demo": ("report", "cli"),
     "fmi": ("estimation", "rigs", "identification", "diagnosis", "report", "cli"),

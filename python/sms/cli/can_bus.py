@@ -49,7 +49,7 @@ def open_address(interface: str, channel: str | None, bitrate: int) -> Iterator[
     from sms.link.bus import BusAddress, open_bus  # noqa: PLC0415
     from sms.link.rig_link import LinkError  # noqa: PLC0415
 
-    with open_bus(BusAddress(interface, channel, bitrate)) as bus, _ended_like_ctrl_c():
+    with open_bus(BusAddress(interface, channel, bitrate)) as bus, ended_like_ctrl_c():
         try:
             yield bus
         except LinkError as problem:
@@ -58,7 +58,7 @@ def open_address(interface: str, channel: str | None, bitrate: int) -> Iterator[
 
 
 @contextmanager
-def _ended_like_ctrl_c() -> Iterator[None]:
+def ended_like_ctrl_c() -> Iterator[None]:
     """A command that is ended (`kill`) finishes as after Ctrl-C: a log is closed, a platform levelled."""
 
     def interrupt(_signal: int, _frame: object) -> None:

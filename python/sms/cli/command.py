@@ -28,6 +28,7 @@ from sms.cli import (
     simulate,
     study,
     validate,
+    watch,
 )
 from sms.cli.assets import Assets
 from sms.errors import InputError
@@ -196,6 +197,7 @@ schema.register(app)
 export.register(app)
 history.register(app)
 validate.register(app)
+watch.register(app)
 
 
 def main() -> None:

@@ -44,6 +44,8 @@ SCHEMA_VERSIONS: Mapping[str, int] = {
     "sweep": 1,
     "trials": 1,
     "validation": 1,
+    "watch": 1,
+    "watch_trials": 1,
     "workspace": 1,
 }
 """Schema -> the version that is written."""

@@ -80,7 +80,11 @@ def load_record(rig: Rig, source: RecordSource) -> Record:
 
     Cells that are not numbers are NaN in the arrays and stand in `findings`; no sample is dropped.
     """
-    table = _read(rig, source.file)
+    return record_of(rig, source, _read(rig, source.file))
+
+
+def record_of(rig: Rig, source: RecordSource, table: Table) -> Record:
+    """The same of a table that has been read."""
     signals: dict[str, NDArray[np.float64]] = {}
     findings = [
         Finding("warning", source.file, r.line, r.column, r.message, r.remedy)

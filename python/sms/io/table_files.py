@@ -146,9 +146,16 @@ def _decoded(file: Path) -> str:
 
 
 def _read_text(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
+    return table_of_text(file, _decoded(file), delimiter, columns)
+
+
+def table_of_text(
+    file: Path, text: str, delimiter: str, columns: Sequence[str] | None = None
+) -> Table:
+    """A table of the text of a file, or of its header and some of its lines; as read_table has it."""
     numbered = [
         (number, line)
-        for number, line in enumerate(_decoded(file).splitlines(), start=1)
+        for number, line in enumerate(text.splitlines(), start=1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if not numbered:
