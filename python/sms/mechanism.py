@@ -49,7 +49,9 @@ class Body:
     """The platform as a rigid body; the legs have no mass."""
 
     mass: float  #: kg
-    cog: tuple[float, float, float]  #: centre of gravity, m, platform axes, from the platform's origin
+    cog: tuple[
+        float, float, float
+    ]  #: centre of gravity, m, platform axes, from the platform's origin
     inertia: tuple[tuple[float, float, float], ...]  #: about it, kg m^2, platform axes, (3, 3)
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)  #: m/s^2, base axes
 
@@ -83,7 +85,9 @@ class Mechanism:
     legs: tuple[Leg, ...]
     driven: tuple[str, ...] = COORDINATES  #: coordinates that are chosen, as many as actuated legs
     home: tuple[float, ...] = _NOTHING  #: pose of the wanted assembly mode: where searches start
-    characteristic_length: float | None = None  #: m; None: root mean square of the joints' distances
+    characteristic_length: float | None = (
+        None  #: m; None: root mean square of the joints' distances
+    )
     body: Body | None = None
     name: str = "mechanism"
     _of: _core.ParallelMechanism = field(init=False, repr=False, compare=False)
@@ -118,6 +122,11 @@ class Mechanism:
         return sum(leg.kind == "actuated" for leg in self.legs)
 
     @property
+    def characteristic_length_in_use(self) -> float:
+        """What a radian is weighed against in `conditioning`, m."""
+        return float(self._of.characteristic_length)
+
+    @property
     def actuated(self) -> list[int]:
         """Numbers of the actuated legs, from 0."""
         return [i for i, leg in enumerate(self.legs) if leg.kind == "actuated"]
@@ -142,7 +151,12 @@ class Mechanism:
         given = self.home if start is None else start
         rows = vectors(length=(columns, length), start=(POSE, given))
         found, iterations, residual, singular, status = self._of.forward(*rows.parts)
-        self._raise(rows, status, singular, "no pose of this assembly mode was found; try a start nearer to it")
+        self._raise(
+            rows,
+            status,
+            singular,
+            "no pose of this assembly mode was found; try a start nearer to it",
+        )
         return self._solution(rows, found, iterations, residual)
 
     def jacobian(self, pose: ArrayLike) -> Array:
@@ -194,7 +208,10 @@ class Mechanism:
         Raises: NotANumberError; NotConvergedError at a singular pose; InputError without a body.
         """
         rows = vectors(
-            pose=(POSE, pose), twist=(_TWIST, twist), acceleration=(_ACCELERATION, acceleration), wrench=(_WRENCH, wrench)
+            pose=(POSE, pose),
+            twist=(_TWIST, twist),
+            acceleration=(_ACCELERATION, acceleration),
+            wrench=(_WRENCH, wrench),
         )
         force, status = self._of.leg_forces(self._body(), *rows.parts)
         self._raise(rows, status, np.ones_like(status, dtype=bool), "no forces hold it there")
@@ -206,10 +223,18 @@ class Mechanism:
         """Acceleration of the platform, (..., 6), for forces of the actuated legs, N, (..., freedoms); see `inverse_dynamics`."""
         columns = tuple((f"force of leg {i + 1}", "N") for i in self.actuated)
         rows = vectors(
-            pose=(POSE, pose), twist=(_TWIST, twist), force=(columns, force), wrench=(_WRENCH, wrench)
+            pose=(POSE, pose),
+            twist=(_TWIST, twist),
+            force=(columns, force),
+            wrench=(_WRENCH, wrench),
         )
         acceleration, status = self._of.acceleration(self._body(), *rows.parts)
-        self._raise(rows, status, np.ones_like(status, dtype=bool), "its acceleration is not determined there")
+        self._raise(
+            rows,
+            status,
+            np.ones_like(status, dtype=bool),
+            "its acceleration is not determined there",
+        )
         return rows.shaped(acceleration, 6)
 
     def outside_range(self, length: Array) -> list[tuple[int, int]]:
@@ -223,7 +248,9 @@ class Mechanism:
         rows.check_finite()
         return rows
 
-    def _solution(self, rows: Rows, found: Array, iterations: NDArray[np.int32], residual: Array) -> Solution:
+    def _solution(
+        self, rows: Rows, found: Array, iterations: NDArray[np.int32], residual: Array
+    ) -> Solution:
         return Solution(
             pose=rows.shaped(found, 6),
             length=rows.shaped(self._of.lengths(found), len(self.legs)),
@@ -231,7 +258,9 @@ class Mechanism:
             residual=rows.shaped(residual),
         )
 
-    def _raise(self, rows: Rows, status: NDArray[np.int32], singular: NDArray[np.bool_], why: str) -> None:
+    def _raise(
+        self, rows: Rows, status: NDArray[np.int32], singular: NDArray[np.bool_], why: str
+    ) -> None:
         if status.any():
             row = int(np.flatnonzero(status)[0])
             met = "the pose is singular: " if singular[row] else ""
@@ -239,9 +268,13 @@ class Mechanism:
 
     def _body(self) -> _core.PlatformBody:
         if self.body is None:
-            raise InputError(f"{self.name}: it has no body; give its mass, cog and inertia ([platform])")
+            raise InputError(
+                f"{self.name}: it has no body; give its mass, cog and inertia ([platform])"
+            )
         b = self.body
-        return _core.PlatformBody(b.mass, list(b.cog), np.array(b.inertia, dtype=float), list(b.gravity))
+        return _core.PlatformBody(
+            b.mass, list(b.cog), np.array(b.inertia, dtype=float), list(b.gravity)
+        )
 
     def _check(self) -> None:
         equations = sum((leg.kind != "free") + (leg.normal is not None) for leg in self.legs)
@@ -257,8 +290,12 @@ class Mechanism:
             )
         for number, leg in enumerate(self.legs, 1):
             if leg.kind == "free" and leg.normal is None:
-                raise InputError(f"{self.name}, leg {number}: free and without a plane it does nothing; leave it out")
+                raise InputError(
+                    f"{self.name}, leg {number}: free and without a plane it does nothing; leave it out"
+                )
             if leg.kind == "fixed" and not (leg.length and leg.length > 0.0):
                 raise InputError(f"{self.name}, leg {number}: a rod needs a length above 0 m")
             if leg.normal is not None and not np.linalg.norm(leg.normal) > 0.0:
-                raise InputError(f"{self.name}, leg {number}: normal is no direction; its length is 0")
+                raise InputError(
+                    f"{self.name}, leg {number}: normal is no direction; its length is 0"
+                )

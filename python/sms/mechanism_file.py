@@ -54,7 +54,9 @@ def read_mechanism(path: str | os.PathLike[str]) -> Mechanism:
             driven=driven,
             home=_home(content.get("home", {}), f"{file}, [home]"),
             characteristic_length=about.length("characteristic_length"),
-            body=_body(content["platform"], f"{file}, [platform]") if "platform" in content else None,
+            body=_body(content["platform"], f"{file}, [platform]")
+            if "platform" in content
+            else None,
             name=str(about.values.get("name", file.stem)),
         )
     except InputError as problem:
@@ -84,7 +86,9 @@ class _Table:
             if (unit is None) != (si is None):
                 remedy = f"'\"{name} [{si}]\"'" if si else f"'{name}'"
                 raise InputError(f"{where}, {key}: write {remedy}")
-            values[name] = said if si is None or unit is None else _numbers(said, unit, si, f"{where}, {key}")
+            values[name] = (
+                said if si is None or unit is None else _numbers(said, unit, si, f"{where}, {key}")
+            )
         return _Table(values, where)
 
     def vector(self, name: str, size: int = 3) -> tuple[float, ...]:
@@ -108,7 +112,9 @@ class _Table:
     def words(self, name: str, known: Sequence[str]) -> tuple[str, ...]:
         said = self.values[name]
         if not isinstance(said, list):
-            raise InputError(f"{self.where}, {name}: a list of names is needed, such as {list(known[2:5])}")
+            raise InputError(
+                f"{self.where}, {name}: a list of names is needed, such as {list(known[2:5])}"
+            )
         for word in said:
             if word not in known:
                 raise InputError(f"{self.where}, {name}: '{word}' is none of {', '.join(known)}")
@@ -143,7 +149,9 @@ def _leg(table: object, where: str) -> Leg:
     if kind not in KINDS:
         raise InputError(f"{where}, kind: '{kind}' is none of {', '.join(KINDS)}")
     if kind != "fixed" and "length" in of.values:
-        raise InputError(f'{where}, length: only a rod has one (kind = "fixed"); a range is "range [m]"')
+        raise InputError(
+            f'{where}, length: only a rod has one (kind = "fixed"); a range is "range [m]"'
+        )
     limits = of.vector("range", 2) if "range" in of.values else None
     if limits is not None and not 0.0 <= limits[0] < limits[1]:
         raise InputError(f"{where}, range: the least length comes first, and is not below 0")
@@ -176,7 +184,9 @@ def _body(table: object, where: str) -> Body:
         raise InputError(f"{where}: inertia is missing")
     inertia = of.values["inertia"]
     if inertia.shape != (3, 3) or not np.array_equal(inertia, inertia.T):
-        raise InputError(f"{where}, inertia: a symmetric matrix of three rows of three numbers is needed")
+        raise InputError(
+            f"{where}, inertia: a symmetric matrix of three rows of three numbers is needed"
+        )
     if not np.linalg.eigvalsh(inertia)[0] >= 0.0:
         raise InputError(f"{where}, inertia: no body has it: a principal moment is negative")
     gravity = _three(of.vector("gravity")) if "gravity" in of.values else (0.0, 0.0, -9.81)

@@ -69,7 +69,8 @@ void evaluate_parallel(const ParallelMechanism<S>& m, const LegEquation equation
   t.mass_matrix.template bottomRightCorner<3, 3>() = inertia - body.mass * lever * lever;
   const Vec3<S> pull = body.mass * (body.gravity - cross(omega, cross(omega, c)));
   const Vec3<S> spin = inertia * omega;
-  t.passive << pull, cross(c, pull) - cross(omega, spin);
+  t.passive.template head<3>() = pull;
+  t.passive.template tail<3>() = cross(c, pull) - cross(omega, spin);
   t.passive += wrench;
 }
 

@@ -81,7 +81,7 @@ Vec6<S> coordinates_of(const PlatformPose<S>& pose) {
   using std::sqrt;
   const Mat3<S>& r = pose.rotation;
   Vec6<S> c;
-  c << pose.position, S(atan2(r(2, 1), r(2, 2))), S(atan2(-r(2, 0), S(sqrt(r(0, 0) * r(0, 0) + r(1, 0) * r(1, 0))))),
+  c << pose.position(0), pose.position(1), pose.position(2), S(atan2(r(2, 1), r(2, 2))), S(atan2(-r(2, 0), S(sqrt(r(0, 0) * r(0, 0) + r(1, 0) * r(1, 0))))),
       S(atan2(r(1, 0), r(0, 0)));
   return c;
 }
@@ -167,7 +167,8 @@ void locate_legs(const ParallelMechanism<S>& m, const PlatformPose<S>& pose, Leg
 template <typename S>
 Eigen::Matrix<S, 1, 6> twist_row(const Vec3<S>& arm, const Vec3<S>& e) {
   Eigen::Matrix<S, 1, 6> row;
-  row << e.transpose(), cross(arm, e).transpose();
+  const Vec3<S> moment = cross(arm, e);
+  row << e(0), e(1), e(2), moment(0), moment(1), moment(2);
   return row;
 }
 
