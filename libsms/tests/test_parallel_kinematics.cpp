@@ -125,7 +125,8 @@ TEST_CASE("parallel: lengths to pose and back, of a hexapod and a 3-RPS, from an
 
 TEST_CASE("parallel: a 3-RPS with its joints on circles obeys the closed form of its parasitic motion") {
   // The planes of three legs at 120 degrees: x, y and yaw of R = Rz(yaw) Ry Rx follow from roll and pitch alone. From
-  // n_i . (d + R p_i) = 0, with R's upper left 2x2 block A: A(1,0) = A(0,1), x = r (A(0,0) - A(1,1)) / 2, y = -r A(0,1).
+  // n_i . (d + R p_i) = 0, with the upper left 2x2 block A of R: A(1,0) = A(0,1), x = r (A(0,0) - A(1,1)) / 2,
+  // y = -r A(0,1).
   const Parallel m = three_rps();
   Random random;
   for (int i = 0; i < sms_test::count / 10; ++i) {
@@ -186,7 +187,7 @@ TEST_CASE("parallel: angles come back from a rotation, and a turn is a rotation"
 }
 
 TEST_CASE("parallel: a singular pose on a way is found where the determinant is zero") {
-  // A level platform with the hexapod's symmetry is singular when turned by a quarter about the vertical (E. F. Fichter,
+  // A level platform with the hexapod's symmetry is singular when turned by a quarter about the vertical (Fichter,
   // A Stewart platform-based manipulator: general theory and practical construction, 1986).
   const Parallel m = hexapod();
   sms::LegEquation equation[6];

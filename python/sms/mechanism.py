@@ -111,7 +111,7 @@ class Mechanism:
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Mechanism:
-        """Read a mechanism from a TOML file, or one that is shipped by its name. InputError names what is wrong where."""
+        """Read a TOML file, or a mechanism that is shipped, by its name. InputError names what is wrong where."""
         from sms.mechanism_file import read_mechanism  # noqa: PLC0415 (pint takes its time)
 
         return read_mechanism(path)
@@ -220,7 +220,10 @@ class Mechanism:
     def forward_dynamics(
         self, pose: ArrayLike, twist: ArrayLike, force: ArrayLike, wrench: ArrayLike = _NOTHING
     ) -> Array:
-        """Acceleration of the platform, (..., 6), for forces of the actuated legs, N, (..., freedoms); see `inverse_dynamics`."""
+        """Acceleration of the platform, (..., 6), for the actuated legs' forces, N, (..., freedoms).
+
+        The other arguments and what is raised: as `inverse_dynamics`.
+        """
         columns = tuple((f"force of leg {i + 1}", "N") for i in self.actuated)
         rows = vectors(
             pose=(POSE, pose),

@@ -1,14 +1,15 @@
 // Dynamics of the platform of a mechanism given by data; its legs have no mass.
 //
-// Newton and Euler about the platform's origin, in base axes, with a = (v', omega') and c the centre of gravity from there:
+// Newton and Euler about the platform's origin, in base axes, with a = (v', omega') and c the centre of gravity from
+// there:
 //
 //   m (v' + omega' x c + omega x (omega x c)) = m g + force
 //   I omega' + omega x I omega + c x m (v' + ...) = c x m g + moment
 //
 // or M a + h = J^T f + w. The rows of J are those of parallel_jacobian: f holds the actuated legs' forces (positive
-// pushes), the rods' and, across their planes, the legs' lateral forces, all of them without friction. Forces of a motion
-// are one linear system. Accelerations of given actuator forces: with the six equations' own accelerations s = J a + b
-// (those of rods and planes are 0),
+// pushes), the rods' and, across their planes, the legs' lateral forces, all of them without friction. Forces of a
+// motion are one linear system. Accelerations of given actuator forces: with the six equations' own accelerations s = J
+// a + b (those of rods and planes are 0),
 //
 //   (J^-T M J^-1) (s - b) = f + J^-T (w - h)
 //
@@ -21,10 +22,10 @@ namespace sms {
 
 template <typename S>
 struct PlatformBody {
-  S mass;            // kg
-  Vec3<S> cog;       // m, platform axes, from the platform's origin
-  Mat3<S> inertia;   // kg m^2, platform axes, about the centre of gravity
-  Vec3<S> gravity;   // m/s^2, base axes
+  S mass;           // kg
+  Vec3<S> cog;      // m, platform axes, from the platform's origin
+  Mat3<S> inertia;  // kg m^2, platform axes, about the centre of gravity
+  Vec3<S> gravity;  // m/s^2, base axes
 };
 
 template <typename S>

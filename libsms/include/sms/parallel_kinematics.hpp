@@ -1,18 +1,18 @@
 // Inverse and forward kinematics of a mechanism given by data (parallel_mechanism.hpp).
 //
-// Inverse: with six actuated legs every pose is possible and the lengths are distances between known points. With fewer,
-// as many of the pose's coordinates as there are actuated legs are chosen (`driven`), and Newton's method finds the
-// others from the equations of rods and planes.
+// Inverse: with six actuated legs every pose is possible and the lengths are distances between known points. With
+// fewer, as many of the pose's coordinates as there are actuated legs are chosen (`driven`), and Newton's method finds
+// the others from the equations of rods and planes.
 //
 // Forward: Newton's method on all six equations,
 //
 //   (|l_i|^2 - L_i^2) / 2 = 0,   n_i . l_i = 0
 //
-// with their exact Jacobian in the twist (v, omega). A step turns the platform by Cayley's formula: a rational function,
-// exactly a rotation, no angles and so no gimbal lock on the way. The equations have up to 40 real solutions (P.
-// Dietmaier, 1998): the search starts at a pose of the wanted assembly mode and its steps are bounded. A solution at which
-// the Jacobian's determinant has another sign than at the start cannot be reached without passing a singularity, and is
-// refused.
+// with their exact Jacobian in the twist (v, omega). A step turns the platform by Cayley's formula: a rational
+// function, exactly a rotation, no angles and so no gimbal lock on the way. The equations have up to 40 real solutions
+// (P. Dietmaier, 1998): the search starts at a pose of the wanted assembly mode and its steps are bounded. A solution
+// at which the Jacobian's determinant has another sign than at the start cannot be reached without passing a
+// singularity, and is refused.
 #pragma once
 
 #include "sms/newton.hpp"
@@ -41,7 +41,8 @@ Mat3<S> turned_by(const Vec3<S>& turn, const Mat3<S>& rotation) {
   return result;
 }
 
-// The six equations' errors, m^2 for a length and m for a plane; `length` of the actuated legs in the order of the legs.
+// The six equations' errors, m^2 for a length and m for a plane; `length` of the actuated legs in the order of the
+// legs.
 template <typename S>
 Vec6<S> equation_errors(const ParallelMechanism<S>& m, const LegEquation equation[6], const S* length,
                         const LegVectors<S>& v) {
@@ -152,8 +153,8 @@ void carry_derivatives(const ParallelMechanism<V>& m, const LegEquation* equatio
   move_by(Vec6<S>(-solution(factors, equation_errors(mechanism, equation, length, in_s))), pose);
 }
 
-// The pose of the actuated legs' lengths (m, in the order of the legs), from a start in the wanted assembly mode. On any
-// status but SMS_OK the pose is as it was. Legs are data: plain numbers; lengths may carry derivatives.
+// The pose of the actuated legs' lengths (m, in the order of the legs), from a start in the wanted assembly mode. On
+// any status but SMS_OK the pose is as it was. Legs are data: plain numbers; lengths may carry derivatives.
 template <typename S>
 sms_status parallel_forward(const ParallelMechanism<ValueOf<S>>& m, const S* length,
                             const PlatformPose<ValueOf<S>>& start, PlatformPose<S>& pose, Search<ValueOf<S>>& search) {

@@ -81,8 +81,13 @@ Vec6<S> coordinates_of(const PlatformPose<S>& pose) {
   using std::sqrt;
   const Mat3<S>& r = pose.rotation;
   Vec6<S> c;
-  c << pose.position(0), pose.position(1), pose.position(2), S(atan2(r(2, 1), r(2, 2))), S(atan2(-r(2, 0), S(sqrt(r(0, 0) * r(0, 0) + r(1, 0) * r(1, 0))))),
-      S(atan2(r(1, 0), r(0, 0)));
+  const S across = sqrt(r(0, 0) * r(0, 0) + r(1, 0) * r(1, 0));
+  for (int k = 0; k < 3; ++k) {
+    c(k) = pose.position(k);
+  }
+  c(3) = atan2(r(2, 1), r(2, 2));
+  c(4) = atan2(-r(2, 0), across);
+  c(5) = atan2(r(1, 0), r(0, 0));
   return c;
 }
 
@@ -204,8 +209,8 @@ Distance<S> distance_from_singularity(const ParallelMechanism<S>& m, const LegEq
   jacobian.template rightCols<3>() /= m.characteristic_length;
   Factors<S> factors;
   factorize(jacobian, factors);
-  const Vec6<S> squares = symmetric_eigen<S, 6>(jacobian.transpose() * jacobian).values;
   using std::sqrt;
+  const Vec6<S> squares = symmetric_eigen<S, 6>(jacobian.transpose() * jacobian).values;
   const S condition =
       squares(0) > S(0) ? S(sqrt(squares(5) / squares(0))) : S(std::numeric_limits<ValueOf<S>>::infinity());
   return {condition, factors.determinant};

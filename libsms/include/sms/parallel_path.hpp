@@ -1,8 +1,8 @@
 // Is there a singular pose on the way from one pose to the next?
 //
-// The determinant of the Jacobian (parallel_mechanism.hpp) is a continuous function along the way, so where it has another
-// sign at the end than at the beginning, it has passed zero, and halving finds where. The way is straight in the pose's
-// driven coordinates; it is sampled, so that of two zeros closer than a sample both can be missed.
+// The determinant of the Jacobian (parallel_mechanism.hpp) is a continuous function along the way, so where it has
+// another sign at the end than at the beginning, it has passed zero, and halving finds where. The way is straight in
+// the pose's driven coordinates; it is sampled, so that of two zeros closer than a sample both can be missed.
 #pragma once
 
 #include "sms/parallel_kinematics.hpp"
@@ -42,8 +42,8 @@ sms_status at_fraction(const ParallelMechanism<V>& m, const LegEquation equation
   return status;
 }
 
-// Both ends are whole poses that fit the rods and planes. On any status but SMS_OK nothing is written; that status is then
-// of a pose on the way that cannot be completed.
+// Both ends are whole poses that fit the rods and planes. On any status but SMS_OK nothing is written; that status is
+// then of a pose on the way that cannot be completed.
 template <typename V>
 sms_status crossing_between(const ParallelMechanism<V>& m, const Vec6<V>& from, const Vec6<V>& to,
                             Crossing<V>& crossing) {

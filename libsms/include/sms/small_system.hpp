@@ -1,5 +1,5 @@
-// Six linear equations by Gaussian elimination with partial pivoting: for matrices that may come close to singular, which
-// the closed forms of scalar.hpp are not made for. Fixed size, no heap; the determinant falls out.
+// Six linear equations by Gaussian elimination with partial pivoting: for matrices that may come close to singular,
+// which the closed forms of scalar.hpp are not made for. Fixed size, no heap; the determinant falls out.
 #pragma once
 
 #include <cmath>
@@ -18,10 +18,10 @@ using Mat6 = Eigen::Matrix<S, 6, 6>;
 template <typename V>
 struct Factors {
   Mat6<V> lu;
-  int row[6];           // of A, that stands in row i
-  V reciprocal[6];      // of U's diagonal
-  V determinant;        // of A
-  V smallest_of_pivots; // smallest over largest pivot; 0 where a pivot is 0: a cheap sign of a singular matrix
+  int row[6];            // of A, that stands in row i
+  V reciprocal[6];       // of U's diagonal
+  V determinant;         // of A
+  V smallest_of_pivots;  // smallest over largest pivot; 0 where a pivot is 0: a cheap sign of a singular matrix
 };
 
 template <typename V>

@@ -56,7 +56,7 @@ def fk(file: str, length: Sequence[float], as_json: bool) -> None:
     mechanism = Mechanism.load(file)
     if len(length) != mechanism.freedoms:
         raise InputError(
-            f"--length: {mechanism.freedoms} legs are actuated, {len(length)} lengths are given; say --length once for each"
+            f"--length: {mechanism.freedoms} legs are actuated, {len(length)} lengths given; say --length once for each"
         )
     _answer("mechanism_fk", mechanism, mechanism.forward(length), as_json)
 
@@ -93,7 +93,8 @@ def workspace(file: str, out: Path, as_json: bool) -> None:
         return
     for r in found:
         print(
-            f"{r.coordinate:<6} {_quantity(r.coordinate, r.end):>12}   beyond: {r.why} (condition number up to {r.condition:.3g})"
+            f"{r.coordinate:<6} {_quantity(r.coordinate, r.end):>12}   beyond: {r.why} "
+            f"(condition number up to {r.condition:.3g})"
         )
     print(f"written: {out / 'workspace.json'}")
 
@@ -149,7 +150,8 @@ def path(
     else:
         for s in singular:
             print(
-                f"singular {100 * s.fraction:.1f} % of the way from line {lines[s.row]} to {lines[s.row + 1]}: {_pose_text(s.pose)}"
+                f"singular {100 * s.fraction:.1f} % of the way from line {lines[s.row]} to {lines[s.row + 1]}: "
+                f"{_pose_text(s.pose)}"
             )
         for row, leg in outside:
             print(
