@@ -18,6 +18,7 @@ void bind_status(py::module_& m);
 void bind_params(py::module_& m);
 void bind_cylinder(py::module_& m);
 void bind_kinematics(py::module_& m);
+void bind_parallel_mechanism(py::module_& m);
 void bind_dynamics(py::module_& m);
 void bind_pneumatics(py::module_& m);
 void bind_friction(py::module_& m);

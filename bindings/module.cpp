@@ -17,6 +17,7 @@ PYBIND11_MODULE(_core, m) {
   sms_python::bind_params(m);
   sms_python::bind_cylinder(m);
   sms_python::bind_kinematics(m);
+  sms_python::bind_parallel_mechanism(m);
   sms_python::bind_dynamics(m);
   sms_python::bind_pneumatics(m);
   sms_python::bind_friction(m);

@@ -9,6 +9,7 @@
 #include "bench.hpp"
 #include "grid.hpp"
 #include "sms/dynamics.hpp"
+#include "sms/parallel_kinematics.hpp"
 #include "sms/sms.h"
 
 namespace sms_timing {
@@ -121,6 +122,32 @@ void in_float() {
         [&](const Sample<float>& s) { return sms_forward_kinematicsf(&geometry, s.extension, &pose, &pose, nullptr); });
 }
 
+// The same machine as one that is given by data (parallel_mechanism.hpp), along the same motion.
+void by_data() {
+  const sms::Geometry<double> g = sms::make_geometry(sms::Params<double>());
+  sms::ParallelMechanism<double> mechanism = {};
+  mechanism.legs = 6;
+  for (int i = 0; i < 6; ++i) {
+    mechanism.leg[i] = {g.base[i],
+                        g.platform[i],
+                        i < 3 ? sms::LegLength::actuated : sms::LegLength::fixed,
+                        i < 3 ? 0.0 : g.panhard_length(i - 3),
+                        false,
+                        sms::Vec3<double>::Zero()};
+  }
+  mechanism.characteristic_length = sms::mean_platform_radius(mechanism);
+  const sms::Pose<double> rest = sms::rest_pose(g);
+  sms::PlatformPose<double> pose = {sms::Vec3<double>(rest.x, rest.y, -rest.height), sms::Mat3<double>::Identity()};
+  along(ship_motion<double>(), "forward kinematics by data, warm", [&](const Sample<double>& s) {
+    double length[3];
+    for (int k = 0; k < 3; ++k) {
+      length[k] = g.actuator_length(k) + s.extension[k];
+    }
+    sms::Search<double> search;
+    return sms::parallel_forward(mechanism, length, pose, pose, search);
+  });
+}
+
 // Free swinging on three springs, every step by the classical fourth-order Runge-Kutta method.
 class Swing {
  public:
@@ -211,6 +238,7 @@ void batch() {
 void mechanism() {
   in_double();
   in_float();
+  by_data();
   simulation();
   table();
   batch();

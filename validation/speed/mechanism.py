@@ -163,6 +163,10 @@ def motion_rows(compiled: Mapping[str, float]) -> Iterator[Row]:
     """Forward kinematics and forward dynamics; `compiled` in ns."""
     forward = compiled["forward kinematics, warm"]
     yield row("forward kinematics, warm", forward, "ns", goal=Goal(at_most=500.0))
+    by_data = compiled["forward kinematics by data, warm"]
+    own = ("of the built-in platform", forward)
+    goal = Goal(ratio_at_least=1.0 / 3.0)
+    yield row("forward kinematics of the same platform by data, warm", by_data, "ns", own, goal)
     single = compiled["forward kinematics, warm, float"]
     yield row("forward kinematics, warm, float", single, "ns")
     dynamics = compiled["forward dynamics"]

@@ -1,4 +1,4 @@
-"""The commands `sms ik`, `sms fk` and `sms workspace`."""
+"""The commands `sms ik`, `sms fk`, `sms workspace` and `sms path`; of a mechanism given by data: by_data.py."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ import typer
 
 from sms import StatusError, forward_kinematics, inverse_kinematics
 from sms._core import Params
+from sms.cli import by_data
 from sms.cli.assets import Assets
+from sms.cli.by_data import MechanismFile
 from sms.errors import InputError, did_you_mean
 from sms.kinematics import ForwardKinematics, InverseKinematics
 from sms.parameter_files import load_params
@@ -45,20 +47,56 @@ def register(app: typer.Typer) -> None:
         epilog="Example: **sms workspace --set payload_mass=280** checks the specified payload; "
         "look at workspace/workspace.html in a browser."
     )(workspace)
+    app.command(
+        epilog="Example: **sms path --mechanism three_rps poses.csv**; poses.csv has a row a pose and columns such "
+        "as *z [m]*, *roll [deg]*."
+    )(by_data.path)
 
 
 def ik(
-    roll: Annotated[float, typer.Option(help="Roll, rad (degrees with --deg).")],
-    pitch: Annotated[float, typer.Option(help="Pitch, rad (degrees with --deg).")],
+    roll: Annotated[float | None, typer.Option(help="Roll, rad (degrees with --deg).")] = None,
+    pitch: Annotated[float | None, typer.Option(help="Pitch, rad (degrees with --deg).")] = None,
     height: Annotated[
-        float, typer.Option(help="Height of the top frame's centre of gravity above ground, m.")
-    ],
-    deg: Annotated[bool, typer.Option("--deg", help="Roll and pitch are in degrees.")] = False,
+        float | None,
+        typer.Option(help="Height of the top frame's centre of gravity above ground, m."),
+    ] = None,
+    yaw: Annotated[float | None, typer.Option(help="With --mechanism: yaw, as roll.")] = None,
+    x: Annotated[
+        float | None, typer.Option("--x", help="With --mechanism: of its origin, m.")
+    ] = None,
+    y: Annotated[float | None, typer.Option("--y", help="With --mechanism: as x.")] = None,
+    z: Annotated[float | None, typer.Option("--z", help="With --mechanism: as x.")] = None,
+    deg: Annotated[bool, typer.Option("--deg", help="Angles are in degrees.")] = False,
     settings: Settings = [],  # noqa: B006 (typer copies it)
+    mechanism: MechanismFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Inverse kinematics: the actuators' extensions for a roll, a pitch and a height."""
+    """Inverse kinematics: the actuators' extensions for a roll, a pitch and a height.
+
+    With --mechanism: the legs' lengths; a coordinate that is not said is the home pose's.
+    """
     unit = math.pi / 180.0 if deg else 1.0
+    only_with_mechanism = {"x": x, "y": y, "z": z, "yaw": yaw}
+    if mechanism is not None:
+        by_data.refuse_with_mechanism(settings, {"--height": height})
+        said = {**only_with_mechanism, "roll": roll, "pitch": pitch}
+        angles = ("roll", "pitch", "yaw")
+        given = {
+            name: value * (unit if name in angles else 1.0)
+            for name, value in said.items()
+            if value is not None
+        }
+        with bad_input():
+            by_data.ik(mechanism, given, as_json)
+        return
+    for name, value in only_with_mechanism.items():
+        if value is not None:
+            raise InputError(f"--{name}: it follows from roll, pitch and height; leave it out")
+    if roll is None or pitch is None or height is None:
+        missing = [
+            n for n, v in (("roll", roll), ("pitch", pitch), ("height", height)) if v is None
+        ]
+        raise InputError(f"ik: --{missing[0]} is missing; say roll, pitch and height")
     with bad_input():
         params = machine(settings)
         found = inverse_kinematics(unit * roll, unit * pitch, height, params=params)
@@ -76,12 +114,33 @@ def ik(
 
 def fk(
     extension: Annotated[
-        tuple[float, float, float], typer.Option(help="Of the three actuators, m.")
-    ],
+        tuple[float, float, float] | None, typer.Option(help="Of the three actuators, m.")
+    ] = None,
+    length: Annotated[
+        list[float],
+        typer.Option(
+            help="With --mechanism: of an actuated leg, m; once for each, in their order."
+        ),
+    ] = [],  # noqa: B006 (typer copies it)
     settings: Settings = [],  # noqa: B006 (typer copies it)
+    mechanism: MechanismFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Forward kinematics: the platform's pose for three extensions."""
+    """Forward kinematics: the platform's pose for three extensions.
+
+    With --mechanism: for the lengths of its actuated legs, in the assembly mode of its home pose.
+    """
+    if mechanism is not None:
+        by_data.refuse_with_mechanism(settings, {"--extension": extension})
+        with bad_input():
+            by_data.fk(mechanism, length, as_json)
+        return
+    if length:
+        raise InputError(
+            "--length: it is of a mechanism given by data; say --mechanism, or --extension"
+        )
+    if extension is None:
+        raise InputError("fk: --extension is missing; give three, m")
     with bad_input():
         params = machine(settings)
         found = forward_kinematics(extension, params=params)
@@ -109,14 +168,20 @@ def workspace(
         "workspace"
     ),
     settings: Settings = [],  # noqa: B006 (typer copies it)
+    mechanism: MechanismFile = None,
     as_json: AsJson = False,
     assets: Assets = Place.inside,
 ) -> None:
     """What the platform can reach: roll and pitch by height, with the required ranges drawn in.
 
     Also the stroke left over, the joints' angles, the distance from singularity, and whether the
-    supply pressure can carry the payload.
+    supply pressure can carry the payload. With --mechanism: how far each driven coordinate alone goes
+    from the home pose, and what ends it; workspace.json only.
     """
+    if mechanism is not None:
+        by_data.refuse_with_mechanism(settings, {})
+        by_data.workspace(mechanism, out, as_json)
+        return
     from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
     from sms.io.json_files import json_text  # noqa: PLC0415
     from sms.report.page import write_page  # noqa: PLC0415
