@@ -38,6 +38,7 @@ from sms.kinematics import (
     pose_jacobian,
     six_leg_inverse,
 )
+from sms.mechanism import Mechanism
 from sms.parameter_files import load_params
 from sms.simulation import (
     Run,
@@ -55,6 +56,7 @@ __all__ = [
     "ForwardKinematics",
     "InverseKinematics",
     "LinearModel",
+    "Mechanism",
     "Modes",
     "Motion",
     "NotANumberError",

@@ -77,7 +77,7 @@ def test_path_finds_the_singular_pose_and_the_leg(tmp_path: Path) -> None:
     ],
 )
 def test_bad_input_is_one_sentence(tmp_path: Path, words: tuple[str, ...], said: str) -> None:
-    (tmp_path / "other.csv").write_text("a [m]\n1\n")
+    (tmp_path / "other.csv").write_text("a [m],b [m]\n1,1\n")
     (tmp_path / "text.csv").write_text("z [m],roll [deg]\n1,up\n")
     (tmp_path / "unit.csv").write_text("z [m],roll\n1,0\n")
     refused(command(*words, cwd=tmp_path), said)
