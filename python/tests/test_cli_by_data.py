@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
+from cli_support import sms as command
 from sms.mechanism import Mechanism
 from test_cli_diagnose import refused
-from test_cli_diagnose import sms as command
 
 RPS = Mechanism.load("three_rps")
 OF = ("--mechanism", "three_rps")
