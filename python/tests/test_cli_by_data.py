@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 from cli_support import sms as command
-from sms.mechanism import Mechanism
+from sms.mechanism_file import load_mechanism
 from test_cli_diagnose import refused
 
-RPS = Mechanism.load("three_rps")
+RPS = load_mechanism("three_rps")
 OF = ("--mechanism", "three_rps")
 
 
