@@ -39,6 +39,7 @@ from sms.kinematics import (
     six_leg_inverse,
 )
 from sms.mechanism import Mechanism
+from sms.mechanism_file import load_mechanism
 from sms.parameter_files import load_params
 from sms.simulation import (
     Run,
@@ -83,6 +84,7 @@ __all__ = [
     "inverse_motion",
     "jacobian",
     "linearise",
+    "load_mechanism",
     "load_params",
     "mass_matrix",
     "notebook_progress",

@@ -1,4 +1,4 @@
-"""Mechanisms given by data: legs between a base and one platform; `Mechanism.load` reads a file.
+"""Mechanisms given by data: legs between a base and one platform; `sms.load_mechanism` reads a file.
 
 A leg is actuated, a rod of fixed length, or free to slide; a revolute joint at the base may keep it in a plane. Six
 actuated legs are a hexapod, three and three rods the platform that this package is about, three with planes a 3-RPS.
@@ -8,7 +8,6 @@ The equations are in libsms/include/sms/parallel_*.hpp; docs/mechanisms.md has t
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -108,13 +107,6 @@ class Mechanism:
             characteristic_length=self.characteristic_length or 0.0,
         )
         object.__setattr__(self, "_of", core)
-
-    @staticmethod
-    def load(path: str | os.PathLike[str]) -> Mechanism:
-        """Read a TOML file, or a mechanism that is shipped, by its name. InputError names what is wrong where."""
-        from sms.mechanism_file import read_mechanism  # noqa: PLC0415 (pint takes its time)
-
-        return read_mechanism(path)
 
     @property
     def freedoms(self) -> int:

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from sms.errors import InputError, did_you_mean
-from sms.io.units import array_to_si, split_column_name
 from sms.mechanism import COORDINATES, KINDS, POSE, Body, Leg, Mechanism
 
 SHIPPED = Path(__file__).parent / "mechanisms"
@@ -27,7 +26,7 @@ def shipped() -> list[str]:
     return sorted(file.stem for file in SHIPPED.glob("*.toml"))
 
 
-def read_mechanism(path: str | os.PathLike[str]) -> Mechanism:
+def load_mechanism(path: str | os.PathLike[str]) -> Mechanism:
     """The mechanism of a file, or one that is shipped by its name. InputError names what is wrong where."""
     file = Path(path)
     if not file.exists() and str(path) in shipped():
@@ -73,6 +72,8 @@ class _Table:
 
     @staticmethod
     def of(table: object, where: str, units: Mapping[str, str | None]) -> _Table:
+        from sms.io.units import split_column_name  # noqa: PLC0415 (pint takes its time)
+
         if not isinstance(table, dict):
             raise InputError(f"{where}: this must be a table")
         values: dict[str, Any] = {}
@@ -122,6 +123,8 @@ class _Table:
 
 
 def _numbers(said: object, unit: str, si: str, where: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    from sms.io.units import array_to_si  # noqa: PLC0415 (pint takes its time)
+
     flat = said
     while isinstance(flat, list):
         flat = [v for part in flat for v in (part if isinstance(part, list) else [part])]

@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 
 import pytest
-from sms.mechanism import Mechanism
+from cli_support import sms as command
+from sms.mechanism_file import load_mechanism
 from test_cli_diagnose import refused
-from test_cli_diagnose import sms as command
 
-RPS = Mechanism.load("three_rps")
+RPS = load_mechanism("three_rps")
 OF = ("--mechanism", "three_rps")
 
 

@@ -13,10 +13,10 @@ from scipy.spatial.transform import Rotation
 from sms import NotANumberError, OutOfWorkspaceError, StatusError
 from sms.errors import InputError
 from sms.mechanism import Leg, Mechanism
-from sms.mechanism_file import shipped
+from sms.mechanism_file import load_mechanism, shipped
 
-RPS = Mechanism.load("three_rps")
-DIETMAIER = Mechanism.load("dietmaier_hexapod")
+RPS = load_mechanism("three_rps")
+DIETMAIER = load_mechanism("dietmaier_hexapod")
 
 
 def random() -> np.random.Generator:
@@ -173,15 +173,15 @@ def test_a_wrong_file_is_refused_in_one_sentence(
     file = tmp_path / "m.toml"
     file.write_text(text.replace(old, new, 1))
     with pytest.raises(InputError) as refused:
-        Mechanism.load(file)
+        load_mechanism(file)
     assert said in str(refused.value) and str(file) in str(refused.value)
 
 
 def test_what_is_shipped_loads_and_can_stand_at_home() -> None:
     assert shipped() == ["dietmaier_hexapod", "three_rps"]
     for name in shipped():
-        mechanism = Mechanism.load(name)
+        mechanism = load_mechanism(name)
         home = mechanism.inverse(mechanism.home)
         assert mechanism.outside_range(home.length[np.newaxis]) == []
     with pytest.raises(InputError, match="dietmaier_hexapod, three_rps"):
-        Mechanism.load("nothing.toml")
+        load_mechanism("nothing.toml")

@@ -15,6 +15,7 @@ from sms import StatusError
 from sms.arrays import Array
 from sms.errors import InputError
 from sms.mechanism import COORDINATES, POSE, Mechanism, Solution
+from sms.mechanism_file import load_mechanism
 
 if TYPE_CHECKING:
     from sms.io.table import Table
@@ -40,7 +41,7 @@ def refuse_with_mechanism(settings: Sequence[str], others: Mapping[str, object])
 
 def ik(file: str, given: Mapping[str, float], as_json: bool) -> None:
     """Lengths of the legs in a pose whose coordinates that are not given are the home pose's."""
-    mechanism = Mechanism.load(file)
+    mechanism = load_mechanism(file)
     for name in given:
         if name not in mechanism.driven:
             raise InputError(
@@ -53,7 +54,7 @@ def ik(file: str, given: Mapping[str, float], as_json: bool) -> None:
 
 def fk(file: str, length: Sequence[float], as_json: bool) -> None:
     """Pose of the actuated legs' lengths."""
-    mechanism = Mechanism.load(file)
+    mechanism = load_mechanism(file)
     if len(length) != mechanism.freedoms:
         raise InputError(
             f"--length: {mechanism.freedoms} legs are actuated, {len(length)} lengths given; say --length once for each"
@@ -68,7 +69,7 @@ def workspace(file: str, out: Path, as_json: bool) -> None:
     from sms.io.write import check_output_folder  # noqa: PLC0415
     from sms.mechanism_reach import reaches  # noqa: PLC0415
 
-    mechanism = Mechanism.load(file)
+    mechanism = load_mechanism(file)
     check_output_folder(out)
     found = reaches(mechanism)
     rows = [
@@ -120,7 +121,7 @@ def path(
 
     if mechanism is None:
         raise InputError("--mechanism: name the mechanism's file, such as three_rps")
-    of = Mechanism.load(mechanism)
+    of = load_mechanism(mechanism)
     wanted, lines = _read_poses(poses, of)
     try:
         found = of.inverse(wanted)
