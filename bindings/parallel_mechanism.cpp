@@ -138,9 +138,8 @@ Rows of_pose(const Rows& pose, py::ssize_t width, const Work& work) {
 }
 
 Rows lengths(const Parallel& p, const Rows& pose) {
-  return of_pose(pose, p.mechanism.legs, [&](const sms::PlatformPose<double>& at, double* out) {
-    sms::leg_lengths(p.mechanism, at, out);
-  });
+  return of_pose(pose, p.mechanism.legs,
+                 [&](const sms::PlatformPose<double>& at, double* out) { sms::leg_lengths(p.mechanism, at, out); });
 }
 
 Rows jacobian(const Parallel& p, const Rows& pose) {

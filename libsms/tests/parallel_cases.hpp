@@ -15,8 +15,12 @@ inline Parallel built_in(const sms::Geometry<double>& g) {
   Parallel m = {};
   m.legs = 6;
   for (int i = 0; i < 6; ++i) {
-    m.leg[i] = {g.base[i], g.platform[i], i < 3 ? sms::LegLength::actuated : sms::LegLength::fixed,
-                i < 3 ? 0.0 : g.panhard_length(i - 3), false, Vec::Zero()};
+    m.leg[i] = {g.base[i],
+                g.platform[i],
+                i < 3 ? sms::LegLength::actuated : sms::LegLength::fixed,
+                i < 3 ? 0.0 : g.panhard_length(i - 3),
+                false,
+                Vec::Zero()};
   }
   const int driven[6] = {3, 4, 2, 0, 0, 0};
   std::copy_n(driven, 6, m.driven);
@@ -78,8 +82,12 @@ inline Parallel hexapod() {
   for (int i = 0; i < 6; ++i) {
     const double third = 2.0 * 3.14159265358979323846 / 3.0, side = i % 2 == 0 ? -1.0 : 1.0;
     const double at = third * (i / 2) + side * 0.2, above = third * ((i + (i % 2)) / 2) - third / 2 - side * 0.25;
-    m.leg[i] = {Vec(std::cos(at), std::sin(at), 0.0), 0.6 * Vec(std::cos(above), std::sin(above), 0.0),
-                sms::LegLength::actuated, 0.0, false, Vec::Zero()};
+    m.leg[i] = {Vec(std::cos(at), std::sin(at), 0.0),
+                0.6 * Vec(std::cos(above), std::sin(above), 0.0),
+                sms::LegLength::actuated,
+                0.0,
+                false,
+                Vec::Zero()};
   }
   m.characteristic_length = sms::mean_platform_radius(m);
   return m;

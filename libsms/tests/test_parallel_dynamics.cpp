@@ -10,8 +10,8 @@ using namespace sms_test;
 
 namespace {
 
-const sms::PlatformBody<double> body = {
-    40.0, Vec(0.02, -0.03, 0.1), sms::symmetric(3.0, 2.5, 4.0, 0.1, -0.2, 0.15), Vec(0.0, 0.0, -9.81)};
+const sms::PlatformBody<double> body = {40.0, Vec(0.02, -0.03, 0.1), sms::symmetric(3.0, 2.5, 4.0, 0.1, -0.2, 0.15),
+                                        Vec(0.0, 0.0, -9.81)};
 const V6 level = 1.0 * V6::Unit(2);
 
 // A twist that keeps rods and planes: J twist = (rates of the actuated legs, 0).
@@ -163,8 +163,8 @@ TEST_CASE("parallel dynamics: the built-in platform without its links, by its ow
     REQUIRE(sms::platform_acceleration(t, 3, force.data(), acceleration) == SMS_OK);
     // Height by its sign; the angular acceleration through the machine's own map.
     worst = std::max(worst, std::abs(-acceleration(2) - expected(2)));
-    worst = std::max(worst, largest(Vec(acceleration.tail<3>()) -
-                                    (terms.motion.angular * expected + terms.motion.angular_bias)));
+    worst = std::max(
+        worst, largest(Vec(acceleration.tail<3>()) - (terms.motion.angular * expected + terms.motion.angular_bias)));
   }
   MESSAGE("worst difference of accelerations " << worst << " rad/s^2 or m/s^2");
   CHECK(worst < 1e-11);

@@ -64,8 +64,8 @@ Mat3<S> full_rotation(const S& roll, const S& pitch, const S& yaw) {
   using std::sin;
   const S sr = sin(roll), cr = cos(roll), sp = sin(pitch), cp = cos(pitch), sy = sin(yaw), cy = cos(yaw);
   Mat3<S> r;
-  r << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr,
-      sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr;
+  r << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
+      -sp, cp * sr, cp * cr;
   return r;
 }
 
@@ -184,8 +184,7 @@ Mat6<S> parallel_jacobian(const ParallelMechanism<S>& m, const LegEquation equat
   Mat6<S> jacobian;
   for (int k = 0; k < 6; ++k) {
     const int i = equation[k].leg;
-    const Vec3<S> e =
-        equation[k].is_plane ? m.leg[i].normal : Vec3<S>(v.link[i] / sqrt(v.link[i].squaredNorm()));
+    const Vec3<S> e = equation[k].is_plane ? m.leg[i].normal : Vec3<S>(v.link[i] / sqrt(v.link[i].squaredNorm()));
     jacobian.row(k) = twist_row(v.arm[i], e);
   }
   return jacobian;
@@ -222,8 +221,9 @@ ParallelMechanism<T> cast(const ParallelMechanism<S>& m) {
   to.legs = m.legs;
   for (int i = 0; i < m.legs; ++i) {
     const Leg<S>& leg = m.leg[i];
-    to.leg[i] = {leg.base.template cast<T>(), leg.platform.template cast<T>(),    leg.length_is,
-                 T(leg.fixed_length),         leg.in_plane,                       leg.normal.template cast<T>()};
+    to.leg[i] = {
+        leg.base.template cast<T>(),  leg.platform.template cast<T>(), leg.length_is, T(leg.fixed_length), leg.in_plane,
+        leg.normal.template cast<T>()};
   }
   for (int k = 0; k < 6; ++k) {
     to.driven[k] = m.driven[k];
