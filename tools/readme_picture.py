@@ -6,8 +6,6 @@ python -m tools.readme_picture        (needs Chromium: apt-get install chromium)
 from __future__ import annotations
 
 import argparse
-import shutil
-import subprocess
 import sys
 import tempfile
 from dataclasses import replace
@@ -29,6 +27,8 @@ from sms.report.page import asset, page
 from sms.report.page import plots as scripts
 from sms.report.plots import Figure, Line, figures_html, payload
 from sms.units_display import axis_unit, capital, format_aligned, format_quantity, words
+
+from tools.chromium import chromium, photograph
 
 PICTURE = Path(__file__).parents[1] / "docs" / "demo.png"
 SIZE = (1200, 640)
@@ -105,7 +105,7 @@ def html(answer: Diagnosis, case: Case, hidden: Hidden) -> str:
 
 def main() -> int:
     argparse.ArgumentParser(prog="python -m tools.readme_picture", description=__doc__).parse_args()
-    browser = shutil.which("chromium") or shutil.which("chromium-browser")
+    browser = chromium()
     if browser is None:
         print("readme_picture: no Chromium here; apt-get install chromium", file=sys.stderr)
         return 2
@@ -122,21 +122,8 @@ def main() -> int:
             return 1
         file = folder / "picture.html"
         file.write_text(html(answer, case, hidden), encoding="utf-8")
-        flags = [
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--no-first-run",
-            "--disable-background-networking",
-            "--disable-component-update",
-            "--disable-sync",
-            "--hide-scrollbars",
-            f"--user-data-dir={folder}/profile",
-            f"--window-size={SIZE[0]},{SIZE[1]}",
-            "--virtual-time-budget=8000",
-            f"--screenshot={PICTURE}",
-        ]
-        subprocess.run([browser, *flags, file.as_uri()], check=True, capture_output=True)
+        until = "--virtual-time-budget=8000"
+        photograph(browser, file.as_uri(), PICTURE, SIZE, folder / "profile", until)
     print(PICTURE)
     return 0
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tools.chromium import chromium, photograph
 from validation.twins import effects
 from validation.twins.draw import draw_trial, write_trial
 from validation.twins.rig_file import write_record
@@ -29,17 +29,6 @@ LEARN, ONSET, END = 240.0, 480.0, 660.0
 """s"""
 PATIENCE = 900.0
 """s until the diagnosis must be there."""
-FLAGS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--hide-scrollbars",
-    "--timeout=4000",
-)
 
 
 def write_day(folder: Path) -> Path:
@@ -61,7 +50,7 @@ def has_happened(log: Path, event: str) -> bool:
 
 def main() -> int:
     argparse.ArgumentParser(prog="python -m tools.watch_picture", description=__doc__).parse_args()
-    browser = shutil.which("chromium") or shutil.which("chromium-browser")
+    browser = chromium()
     if browser is None:
         print("watch_picture: no Chromium here; apt-get install chromium", file=sys.stderr)
         return 2
@@ -81,9 +70,7 @@ def main() -> int:
                     print("watch_picture: the leak was not diagnosed", file=sys.stderr)
                     return 1
                 time.sleep(1.0)
-            flags = [*FLAGS, f"--user-data-dir={folder}/profile", f"--screenshot={PICTURE}"]
-            size = f"--window-size={SIZE[0]},{SIZE[1]}"
-            subprocess.run([browser, *flags, size, address], check=True, capture_output=True)
+            photograph(browser, address, PICTURE, SIZE, folder / "profile", "--timeout=4000")
         finally:
             watch.terminate()
             watch.wait()
