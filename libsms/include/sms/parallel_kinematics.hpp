@@ -98,30 +98,47 @@ V step_size(const Vec6<V>& step, const V& characteristic_length) {
 
 constexpr int most_steps_of_search() { return 50; }
 
+// One step of a search, and the determinant it began with, whose sign it has to keep.
+template <typename V>
+struct NewtonStep {
+  Factors<V> factors;
+  V first_determinant;
+  Vec6<V> step;
+  V size;
+
+  bool same_sign() const { return (factors.determinant > V(0)) == (first_determinant > V(0)); }
+};
+
+// The step that solves slope step = error. False where there is none.
+template <typename V>
+bool find_step(const Mat6<V>& slope, const Vec6<V>& error, const V& characteristic_length, NewtonStep<V>& newton,
+               Search<V>& search) {
+  factorize(slope, newton.factors);
+  search.singular = is_singular(newton.factors);
+  if (search.singular) {
+    return false;
+  }
+  newton.first_determinant = search.iterations == 0 ? newton.factors.determinant : newton.first_determinant;
+  newton.step = solution(newton.factors, error);
+  newton.size = step_size(newton.step, characteristic_length);
+  return newton.size < std::numeric_limits<V>::max();
+}
+
 template <typename V>
 sms_status solve_forward(const ParallelMechanism<V>& m, const LegEquation equation[6], const V* length,
-                         PlatformPose<V>& pose, Factors<V>& factors, Search<V>& search) {
+                         PlatformPose<V>& pose, NewtonStep<V>& newton, Search<V>& search) {
   LegVectors<V> v;
-  V first_determinant = V(0);
   for (search.iterations = 0; search.iterations < most_steps_of_search();) {
     locate_legs(m, pose, v);
     const Vec6<V> error = equation_errors(m, equation, length, v);
     search.residual = largest_error(equation, v, error, 0);
-    factorize(equation_slopes(m, equation, v), factors);
-    if (is_singular(factors)) {
-      search.singular = true;
+    if (!find_step(equation_slopes(m, equation, v), error, m.characteristic_length, newton, search)) {
       return SMS_NOT_CONVERGED;
     }
-    first_determinant = search.iterations == 0 ? factors.determinant : first_determinant;
-    const Vec6<V> step = solution(factors, error);
-    const V size = step_size(step, m.characteristic_length);
-    move_by(Vec6<V>(-damping(size) * step), pose);
+    move_by(Vec6<V>(-damping(newton.size) * newton.step), pose);
     ++search.iterations;
-    if (!(size < std::numeric_limits<V>::max())) {
-      return SMS_NOT_CONVERGED;
-    }
-    if (size < close_step<V>()) {
-      return (factors.determinant > V(0)) == (first_determinant > V(0)) ? SMS_OK : SMS_OUT_OF_WORKSPACE;
+    if (newton.size < close_step<V>()) {
+      return newton.same_sign() ? SMS_OK : SMS_OUT_OF_WORKSPACE;
     }
   }
   return SMS_NOT_CONVERGED;
@@ -183,15 +200,15 @@ sms_status parallel_forward(const ParallelMechanism<ValueOf<S>>& m, const S* len
     return SMS_OUT_OF_WORKSPACE;
   }
   PlatformPose<V> found = start;
-  Factors<V> factors;
-  const sms_status status = solve_forward(m, equation, value, found, factors, search);
+  NewtonStep<V> newton;
+  const sms_status status = solve_forward(m, equation, value, found, newton, search);
   if (status != SMS_OK) {
     return status;
   }
   // The last step, with the slope of the one before; its errors are of the found pose.
   LegVectors<V> v;
   locate_legs(m, found, v);
-  move_by(Vec6<V>(-solution(factors, equation_errors(m, equation, value, v))), found);
+  move_by(Vec6<V>(-solution(newton.factors, equation_errors(m, equation, value, v))), found);
   locate_legs(m, found, v);
   search.residual = largest_error(equation, v, equation_errors(m, equation, value, v), 0);
   carry_derivatives(m, equation, length, found, pose);
@@ -232,15 +249,14 @@ sms_status complete_coordinates(const ParallelMechanism<V>& m, Vec6<V>& coordina
   }
   Vec6<V> c = coordinates;
   LegVectors<V> v;
-  Factors<V> factors;
-  V first_determinant = V(0);
+  NewtonStep<V> newton;
   bool close = false;
   while (true) {
     locate_legs(m, pose_of(c), v);
     Vec6<V> error = equation_errors(m, equation, no_length, v);
     search.residual = largest_error(equation, v, error, freedoms);
     if (close) {
-      if ((factors.determinant > V(0)) != (first_determinant > V(0))) {
+      if (!newton.same_sign()) {
         return SMS_OUT_OF_WORKSPACE;
       }
       coordinates = c;
@@ -257,20 +273,12 @@ sms_status complete_coordinates(const ParallelMechanism<V>& m, Vec6<V>& coordina
       slope(k, m.driven[k]) = V(1);
       error(k) = V(0);
     }
-    factorize(slope, factors);
-    if (is_singular(factors)) {
-      search.singular = true;
+    if (!find_step(slope, error, m.characteristic_length, newton, search)) {
       return SMS_NOT_CONVERGED;
     }
-    first_determinant = search.iterations == 0 ? factors.determinant : first_determinant;
-    const Vec6<V> step = solution(factors, error);
-    const V size = step_size(step, m.characteristic_length);
-    if (!(size < std::numeric_limits<V>::max())) {
-      return SMS_NOT_CONVERGED;
-    }
-    c -= damping(size) * step;
+    c -= damping(newton.size) * newton.step;
     ++search.iterations;
-    close = size < negligible_step<V>();
+    close = newton.size < negligible_step<V>();
   }
 }
 
