@@ -253,7 +253,7 @@ def test_what_a_cause_took_beside_another_that_is_gone_it_has_to_take_alone(
     for name, stands in (("clock", False), ("tube", True)):
         trial = Trial(cast(Any, name), cast(Any, None), 0.0, np.zeros(1))
         trial.accepted = True
-        found, current = stepwise._missed(
+        found, current = stepwise._backward_elimination(
             [[trial]], cast(Any, ""), cast(Any, name), cast(Any, None)
         )
         assert (found == [[trial]]) == stands

@@ -225,7 +225,7 @@ def stepwise_selection(
         current = _with_these(found, baseline, current, data)
         judged_alone = False
     if not judged_alone:
-        found, current = _missed(found, baseline, current, data)
+        found, current = _backward_elimination(found, baseline, current, data)
     return Outcome(current, rounds, found)
 
 
@@ -272,7 +272,7 @@ def without_unshifted(
             if not kept:
                 return Outcome(baseline, outcome.rounds, kept)
             current = _with_these(kept, baseline, outcome.final, data)
-            kept, current = _missed(kept, baseline, current, data)
+            kept, current = _backward_elimination(kept, baseline, current, data)
             return Outcome(current, outcome.rounds, kept)
     return None
 
@@ -295,7 +295,7 @@ def _with_these(
     )
 
 
-def _missed(
+def _backward_elimination(
     found: list[list[Trial]], baseline: Fitted, current: Fitted, data: Data
 ) -> tuple[list[list[Trial]], Fitted]:
     """The causes that are missed where they are taken out, and their model. What a cause took beside another that is
