@@ -23,7 +23,9 @@ def commands(text: str) -> list[str]:
 @pytest.mark.full
 def test_every_command_of_the_tutorial(tmp_path: Path) -> None:
     pytest.importorskip("msgpack", reason="the bus over UDP needs the extra sms[can]")
-    script = "set -e\ntrap 'kill $(jobs -p)' EXIT\n" + "\n".join(commands(PAGE.read_text()))
+    # On a slow computer the rigs have ended by themselves before the diagnosis has.
+    cleanup = "trap 'kill $(jobs -p) 2>/dev/null || true' EXIT"
+    script = f"set -e\n{cleanup}\n" + "\n".join(commands(PAGE.read_text()))
     for usual, own in PORTS.items():
         script = script.replace(usual, own)
     bin_folder = Path(sys.executable).parent

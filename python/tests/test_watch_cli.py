@@ -57,6 +57,8 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (("--play", "gone.csv"), "no such file"),
         (("--follow", "gone.csv"), "start the logger first"),
         (("--interface", "socketcn"), "no CAN interface"),
+        (("--play", "a.csv", "--alarm-frame", "0x1F0"), "on which bus"),
+        (("--play", "a.csv", "--interface", "virtual", "--alarm-frame", "x"), "no identifier"),
         (("--play", "a.csv", "--learn", "10"), "--learn 10"),
         (("--play", "a.csv", "--false-alarms-per-day", "0"), "more than 0"),
         (("--play", "a.csv", "--diagnose-after", "5"), "--diagnose-after 5"),

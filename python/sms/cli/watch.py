@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from sms.io.rig import Rig
+    from sms.watch.alarm_frame import AlarmFrame
     from sms.watch.feed import Chunk
     from sms.watch.watch import Status, Watch
 
@@ -83,6 +84,14 @@ def watch(
             "JSON.",
         ),
     ] = None,
+    alarm_frame: Annotated[
+        str | None,
+        typer.Option(
+            metavar="IDENTIFIER",
+            help="Send each alarm, its verdict and its end as a CAN frame with this identifier, *0x1F0* say, on the "
+            "bus of **--interface**. What is in it: *sms/watch/alarm.dbc*.",
+        ),
+    ] = None,
     out: Annotated[
         Path, typer.Option(help="Folder for events.jsonl, the rows, and a folder an alarm.")
     ] = Path("watch"),
@@ -117,6 +126,11 @@ def watch(
             rig, out, keep, on_alarm, (learn, false_alarms_per_day, diagnose_after)
         )
         stack.callback(beside.close)
+        if alarm_frame is not None:
+            beside.listeners = [
+                *beside.listeners,
+                _frames(stack, loaded, alarm_frame, interface, channel, bitrate),
+            ]
         console = Console(markup=False)
         if page is not None:
             from sms.watch.page import Page  # noqa: PLC0415 (an optional extra)
@@ -164,10 +178,36 @@ def _prepared(
             f"{rig}: a {loaded.kind} is not simulated beside its machine; sms watch is for {', '.join(KINDS)}"
         )
     check_output_folder(out)
-    command = None if on_alarm is None else OnAlarm(on_alarm)
+    listeners = [] if on_alarm is None else [OnAlarm(on_alarm)]
     recorder = None if keep == 0.0 else Recorder(out / "rows", keep)
     log = EventLog(out / "events.jsonl")
-    return Watch(loaded, options, out, log, recorder, command), loaded
+    return Watch(loaded, options, out, log, recorder, listeners), loaded
+
+
+def _frames(
+    stack: ExitStack,
+    rig: Rig,
+    identifier: str,
+    interface: str | None,
+    channel: str | None,
+    bitrate: int,
+) -> AlarmFrame:
+    """What sends alarms on the bus."""
+    from sms.io.can_frames import load_dbc  # noqa: PLC0415
+    from sms.link.bus import BusAddress  # noqa: PLC0415 (python-can takes its time)
+    from sms.watch.alarm_frame import AlarmFrame  # noqa: PLC0415
+
+    if interface is None:
+        raise InputError("--alarm-frame: on which bus? Give --interface, and --channel")
+    try:
+        number = int(identifier, 0)
+    except ValueError:
+        raise InputError(
+            f"--alarm-frame '{identifier}' is no identifier; write it as 0x1F0 or 496"
+        ) from None
+    frame = AlarmFrame(BusAddress(interface, channel, bitrate), number, load_dbc(rig.layout.dbc))
+    stack.callback(frame.close)
+    return frame
 
 
 def _stream(

@@ -6,13 +6,16 @@ import os
 import shlex
 import shutil
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from sms.errors import InputError
 from sms.io.json_files import json_line
+
+Listener = Callable[[str, Mapping[str, Any], str], str | None]
+"""Is told an alarm, a diagnosis and the end of an alarm: event, content, line of the log. Returns what went wrong."""
 
 
 class EventLog:
@@ -41,7 +44,7 @@ class EventLog:
 
 
 class OnAlarm:
-    """Starts a command for each alarm and verdict, without a shell, and does not wait for it.
+    """Starts a command for each alarm and verdict, without a shell, and does not wait for it; a listener of `Watch`.
 
     The event is its last argument, as JSON.
     """
@@ -58,15 +61,17 @@ class OnAlarm:
             )
         self._running: list[subprocess.Popen[bytes]] = []
 
-    def __call__(self, event: str) -> str | None:
+    def __call__(self, event: str, content: Mapping[str, Any], line: str) -> str | None:
         """Start it with a line of the log; why not, in a sentence."""
+        if event not in ("alarm", "diagnosed"):
+            return None
         self._running = [p for p in self._running if p.poll() is None]
         if len(self._running) >= self.MOST:
             return f"--on-alarm: {self.MOST} of them run still, so it was not started"
         try:
             self._running.append(
                 subprocess.Popen(
-                    [*self.words, event.rstrip("\n")],
+                    [*self.words, line.rstrip("\n")],
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,
                     stderr=subprocess.DEVNULL,

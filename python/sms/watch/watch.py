@@ -26,7 +26,7 @@ from sms.watch.detector import LAGS, Detector, Look
 from sms.watch.excerpt import write_excerpt
 from sms.watch.feed import Chunk
 from sms.watch.healthy import LEAST, Baseline, learn
-from sms.watch.log import EventLog, OnAlarm
+from sms.watch.log import EventLog, Listener
 from sms.watch.recorder import Recorder
 from sms.watch.segments import SEGMENT, Interruption, Segment, Segmenter
 
@@ -107,7 +107,7 @@ class Watch:
     out: Path
     log: EventLog
     recorder: Recorder | None = None
-    on_alarm: OnAlarm | None = None
+    listeners: Sequence[Listener] = ()
     show: Callable[[Status], None] = lambda status: None
     on_look: Callable[[Look, Alarm | None], None] = lambda look, alarm: None
     """Called for each segment, with the alarm that stands."""
@@ -221,7 +221,7 @@ class Watch:
             self.alarms.append(after)
             self._tell("alarm", after.to_dict())
         elif before is not None and after is None:
-            self.log.write("alarm_ended", {"alarm": before.number, "time_s": segment.end})
+            self._tell("alarm_ended", {"alarm": before.number, "time_s": segment.end})
         if after is not None:
             self._ask(after, segment.end)
         self._collect()
@@ -249,9 +249,10 @@ class Watch:
     # ---- alarms ----------------------------------------------------------------------------------
 
     def _tell(self, event: str, content: Mapping[str, Any]) -> None:
-        told = self.log.write(event, content)
-        if self.on_alarm is not None and (problem := self.on_alarm(told)) is not None:
-            self.log.write("note", {"sentence": problem})
+        line = self.log.write(event, content)
+        for listener in self.listeners:
+            if (problem := listener(event, content, line)) is not None:
+                self.log.write("note", {"sentence": problem})
 
     def _ask(self, alarm: Alarm, now: float) -> None:
         after = self.options.diagnose_after
@@ -276,7 +277,7 @@ class Watch:
     def _conclude(self, verdict: Verdict) -> None:
         self._diagnosis = None
         self.verdicts.append(verdict)
-        self._tell("diagnosed", verdict.to_dict())
+        self._tell("diagnosed", verdict.to_dict() | {"time_s": self.time})
         self._show()
 
     def finish(self) -> None:

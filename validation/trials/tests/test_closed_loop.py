@@ -13,7 +13,7 @@ from validation.twins.air import Array
 from validation.twins.closed_loop import draw_closed
 from validation.twins.controller import PLATFORM_CONTROLLER, Controller
 
-LEAK = 2e-9  # kg/(s Pa)
+LEAK = 2e-8  # kg/(s Pa): three of the detection limits of such a bench without its command (`still_hidden`: 6e-9)
 CONTROLLERS = {"bench": Controller(), "platform": PLATFORM_CONTROLLER}
 
 
