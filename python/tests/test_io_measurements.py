@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import json
 from pathlib import Path
@@ -38,6 +39,23 @@ def check_two_rates(table: Table, stroke: str, pressure: str) -> None:
     np.testing.assert_allclose(column(table, stroke), np.interp(time, TIME, STROKE), atol=1e-12)
     np.testing.assert_allclose(column(table, pressure), 3.0 + 2.0 * time, rtol=1e-6)
     assert any("straight lines" in r.message for r in table.remarks)
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_of_a_broken_mdf_one_sentence_is_said_and_nothing_is_printed(tmp_path: Path) -> None:
+    asammdf = pytest.importorskip("asammdf")
+    log = asammdf.MDF(version="4.10")
+    log.append([asammdf.Signal(STROKE, TIME, name="stroke", unit="mm")])
+    file = Path(log.save(tmp_path / "whole.mf4", overwrite=True))
+    log.close()
+    spoilt = bytearray(file.read_bytes())
+    spoilt[64:72] = b"no block"  # of which the header begins
+    for ending in (".mf4", ".mdf"):
+        broken = tmp_path / f"broken{ending}"
+        broken.write_bytes(spoilt)
+        with pytest.raises(InputError, match="not a readable"):
+            read(broken)
+    gc.collect()  # destructors run here, if they have not
 
 
 # ---- measurement systems -------------------------------------------------------------------------

@@ -18,6 +18,7 @@ from typing import Any
 import can
 
 from sms.errors import InputError
+from sms.io.mdf_library import quiet_about_broken_files
 from sms.io.table import ending_of, is_packed
 
 #: what `record` writes
@@ -48,8 +49,9 @@ def read_frames(file: Path) -> Iterator[can.Message]:
         raise InputError(f"{file}: not a CAN log (known endings: {', '.join(_READERS)})")
     if not file.is_file():
         raise InputError(f"{file}: there is no such log; check the path")
-    for library in ("can", "asammdf"):  # what they would print stands in the sentence below
-        logging.getLogger(library).setLevel(logging.CRITICAL)
+    logging.getLogger("can").setLevel(logging.CRITICAL)  # it stands in the sentence below
+    if reader is can.MF4Reader:
+        quiet_about_broken_files()
     # times as written, not shifted to the date of the header
     options = {"relative_timestamp": True} if reader is can.ASCReader else {}
     number = 0

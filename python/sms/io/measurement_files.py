@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sms.errors import InputError
+from sms.io.mdf_library import quiet_about_broken_files
 from sms.io.table import Table
 from sms.io.time_base import Group, named, on_one_time, raise_if_too_many, vectors
 
@@ -74,9 +75,10 @@ def _library(file: Path, form: str) -> Iterator[Any]:
         raise InputError(
             f'{file}: {form} files need one more package; pip install "sms[logs]", or save it as .csv'
         ) from None
-    logging.getLogger(package).setLevel(
-        logging.CRITICAL
-    )  # what it would print stands in the sentence
+    # What it would print stands in the sentence.
+    logging.getLogger(package).setLevel(logging.CRITICAL)
+    if form == "MDF":
+        quiet_about_broken_files()
     try:
         yield library
     except InputError:
