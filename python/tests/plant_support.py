@@ -105,9 +105,6 @@ def write_bench(
         for name, size in noise.items():
             clean = run.reading(name)[::EVERY]
             signals[name] = clean + random.normal(0.0, size, clean.size)
-        for name in ATTITUDE if attitude else ():
-            clean = run.reading(name)[::EVERY]
-            signals[name] = clean + random.normal(0.0, 1.5e-4, clean.size)
         write_record(folder / f"run{number}.csv", signals)
         text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
     (folder / "rig.toml").write_text(text)

@@ -144,7 +144,7 @@ def test_a_simulation_takes_the_file_and_says_what_it_leaves_out(
 ) -> None:
     file = tmp_path / "geometry.toml"
     file.write_text(
-        '[parameters]\nbase_joint_1_x = "1370 mm"\npayload_mass = 250.0\n'
+        '[parameters]\nbase_joint_1_x = "1370 mm"\npayload_mass = "250 kg"\n'
         '"sensor_gain_extension:2" = 0.004\n',
         encoding="utf-8",
     )
@@ -158,7 +158,7 @@ def test_a_simulation_takes_the_file_and_says_what_it_leaves_out(
 def test_tables_take_the_parameters_as_words(tmp_path: Path) -> None:
     file = tmp_path / "geometry.toml"
     file.write_text(
-        '[parameters]\nbase_joint_1_x = "1370.1 mm"\n"sensor_gain_extension:2" = 0.004\n',
+        '[parameters]\nbase_joint_1_x = "1.3701 m"\n"sensor_gain_extension:2" = 0.004\n',
         encoding="utf-8",
     )
     said = CliRunner().invoke(app, ["export", "table-params", str(file)])
