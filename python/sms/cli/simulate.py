@@ -110,7 +110,7 @@ def settings_in_si(settings: list[str]) -> dict[str, float]:
     from sms.parameter_files import read_values  # noqa: PLC0415
     from sms.scenario.load import parameter_value  # noqa: PLC0415
 
-    values = {}
+    values: dict[str, float] = {}
     for setting in sorted(settings, key=lambda s: not is_file(s)):
         if is_file(setting):
             said = read_values(setting)
