@@ -19,6 +19,14 @@ def load_params(path: str | os.PathLike[str]) -> _core.LegParams:
 
     Raises: InputError for what is not readable, not known, or outside the bounds of params.def.
     """
+    params = _core.LegParams()
+    for name, value in read_values(path).items():
+        params[name] = value
+    return params
+
+
+def read_values(path: str | os.PathLike[str]) -> dict[str, float]:
+    """What the [parameters] of such a file say, SI, by name; InputError as `load_params`."""
     from sms.io.units import to_si  # noqa: PLC0415 (pint takes its time)
 
     file = Path(path)
@@ -35,7 +43,7 @@ def load_params(path: str | os.PathLike[str]) -> _core.LegParams:
         raise InputError(
             f"{file}: the table [parameters] is missing; sms calibrate geometry writes one"
         )
-    params = _core.LegParams()
+    values = {}
     for name, said in table.items():
         where = f"{file}, [parameters] {name}"
         if name not in LEG_PARAMETERS:
@@ -52,8 +60,8 @@ def load_params(path: str | os.PathLike[str]) -> _core.LegParams:
             raise InputError(
                 f"{where}: {value:g} {row.unit} is outside {row.lower:g} to {row.upper:g}; correct it"
             )
-        params[name] = value
-    return params
+        values[name] = value
+    return values
 
 
 def c_header(params: _core.LegParams, source: str) -> str:

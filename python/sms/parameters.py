@@ -57,6 +57,8 @@ LINEARITY = tuple(
 """By how much sensors deviate from their best straight lines, of their spans."""
 SENSORS = tuple(n for n, p in PARAMETERS.items() if n.startswith("sensor_") and p.uncertainty > 0.0)
 """Zero and gain of pressure sensors, which are calibrated to so much, and the linearity of all."""
+GEOMETRY = tuple(n for n in PARAMETERS if "_joint_" in n or "_length_offset_" in n)
+"""Where the joints are, and by how much the links are longer than these are apart at rest."""
 SPECIMENS = MAPS + tuple(n for n in SENSORS if n.rpartition("_")[2] not in ("roll", "pitch"))
 """What two valves, cylinders or sensors of one type differ by: each leg of a machine with three has its own."""
 

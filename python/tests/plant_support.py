@@ -125,6 +125,7 @@ PLATFORM_NOISE = {
     "chamber_pressure_lower": (300.0, "300 Pa"),
     "chamber_pressure_upper": (300.0, "300 Pa"),
 }
+ATTITUDE = ("roll", "pitch")
 PLATFORM_RIG = """
 [rig]
 kind = "platform"
@@ -152,10 +153,12 @@ def write_platform(
     *,
     in_loop: bool = False,
     command: bool = True,
+    attitude: bool = False,
 ) -> Path:
     """A record to identify with and one to validate with; truth: "name" of all legs, "name:2" of leg 2.
 
-    in_loop: the rig file asks for simulated controllers; command: whether their outputs are recorded.
+    in_loop: the rig file asks for simulated controllers; command: whether their outputs are recorded; attitude: whether
+    an inclinometer is.
     """
     random = np.random.default_rng(seed)
     machine = _core.LegParams(Params(proportional_gain=8.0))
@@ -168,6 +171,8 @@ def write_platform(
         )
         if command or signal != "valve_command":
             text += "".join(f"{signal}_{leg} = {source}\n" for leg in (1, 2, 3))
+    if attitude:
+        text += "".join(f'{name} = {{ noise = "0.15 mrad" }}\n' for name in ATTITUDE)
     if in_loop:
         text += "".join(f"setpoint_{leg} = {{}}\n" for leg in (1, 2, 3)) + IN_LOOP
     for number, role in enumerate(("identify", "validate")):
@@ -183,6 +188,9 @@ def write_platform(
             for name, (size, _) in PLATFORM_NOISE.items():
                 clean = run.reading(f"{name}_{leg}")[::EVERY]
                 signals[f"{name}_{leg}"] = clean + random.normal(0.0, size, clean.size)
+        for name in ATTITUDE if attitude else ():
+            clean = run.reading(name)[::EVERY]
+            signals[name] = clean + random.normal(0.0, 1.5e-4, clean.size)
         write_record(folder / f"run{number}.csv", signals)
         text += f'\n[[records]]\nfile = "run{number}.csv"\nrole = "{role}"\n'
     (folder / "rig.toml").write_text(text)

@@ -13,6 +13,7 @@ from sms.calibration.proposal import END_MARGIN, propose
 from sms.calibration.result import geometry_file
 from sms.calibration.rig import PosesRig, load_poses
 from sms.cli import app
+from sms.cli.simulate import settings_in_si
 from sms.errors import InputError
 from sms.io.schema import ParameterTable
 from sms.parameter_files import c_header, load_params
@@ -136,3 +137,29 @@ def test_unknown_column(machine: Machine, tmp_path: Path) -> None:
     poses.write_text(poses.read_text().replace("roll [deg]", "rol [deg]"))
     with pytest.raises(InputError, match="did you mean 'roll'"):
         load_poses(rig)
+
+
+def test_a_simulation_takes_the_file_and_says_what_it_leaves_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "geometry.toml"
+    file.write_text(
+        '[parameters]\nbase_joint_1_x = "1370 mm"\npayload_mass = "250 kg"\n'
+        '"sensor_gain_extension:2" = 0.004\n',
+        encoding="utf-8",
+    )
+    found = settings_in_si(["payload_mass=280", str(file)])
+    assert found == {"base_joint_1_x": 1.37, "payload_mass": 280.0}
+    assert "sensor_gain_extension:2" in capsys.readouterr().err
+    with pytest.raises(InputError, match=r"none\.toml: cannot be read"):
+        settings_in_si([str(tmp_path / "none.toml")])
+
+
+def test_tables_take_the_parameters_as_words(tmp_path: Path) -> None:
+    file = tmp_path / "geometry.toml"
+    file.write_text(
+        '[parameters]\nbase_joint_1_x = "1.3701 m"\n"sensor_gain_extension:2" = 0.004\n',
+        encoding="utf-8",
+    )
+    said = CliRunner().invoke(app, ["export", "table-params", str(file)])
+    assert (said.exit_code, said.stdout.split()) == (0, ["base_joint_1_x=1.3701"])

@@ -26,7 +26,7 @@ from sms.diagnosis.remainder import Shape
 from sms.estimation.least_squares import changed
 from sms.io.records import load_record
 from sms.io.rig import load_rig
-from sms.parameters import LEG_PARAMETERS, PARAMETERS
+from sms.parameters import GEOMETRY, LEG_PARAMETERS, PARAMETERS
 
 from validation.random_cases import draw
 
@@ -153,6 +153,41 @@ def test_a_leak_of_one_leg_is_named_with_its_size(tmp_path: Path) -> None:
     assert answer.hidden is not None
     assert answer.hidden.equation.startswith("flow of the lower chamber")
     assert "leg 2" in answer.sentence
+
+
+def test_a_rod_of_another_length_is_named_with_its_size(tmp_path: Path) -> None:
+    """By roll and pitch, which disagree with the extensions."""
+    longer = 0.012  # m
+    truth = {"panhard_length_offset_2": longer}
+    answer = diagnose(write_platform(tmp_path, 3, truth, 2.2, attitude=True))
+    assert answer.verdict == "cause"
+    (cause,) = answer.causes
+    assert (cause.effect, cause.signal) == ("link_length", "panhard_length_offset_2")
+    (found,) = cause.parameters
+    assert found.value == pytest.approx(longer, abs=3.0 * found.standard_error)
+    assert "Panhard rod 2" in answer.sentence
+
+
+def test_joints_move_in_a_baseline_only_where_the_rig_file_declares_them(tmp_path: Path) -> None:
+    file = write_platform(tmp_path, 3, {}, 2.2, attitude=True)
+
+    def free() -> set[str]:
+        rig = load_rig(file)
+        data = make_data(rig, [load_record(rig, source) for source in rig.records])
+        return set(baseline_hypothesis(data, effects_of(rig)).free)
+
+    assert not free() & set(GEOMETRY)
+    said = 'base_joint_2_y = { value = "-1.182264 m", uncertainty = "5 mm" }'
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("[[records]]", f"[parameters]\n{said}\n\n[[records]]", 1))
+    assert free() & set(GEOMETRY) == {"base_joint_2_y"}
+
+
+def test_what_is_plausible_of_a_joint_counts_from_where_it_is_declared() -> None:
+    joint = {e.key: e for e in catalogue("platform")}["joint_position of base_joint_2_y"]
+    assert joint.plausible_change(-1.18) == (-0.03, 0.03)
+    assert joint.plausible_range(-1.18) == pytest.approx((-1.21, -1.15))
+    assert "base joint of actuator 2 (y)" in joint.title
 
 
 def test_a_second_parameter_that_records_hardly_feel_stays_within_its_range(tmp_path: Path) -> None:

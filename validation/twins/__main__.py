@@ -27,7 +27,7 @@ def _draw(options: argparse.Namespace) -> None:
 
 def _limits(options: argparse.Namespace) -> None:
     rig = RIGS[options.rig]
-    every = effects.on(rig.kind, (*effects.CATALOGUE, *effects.OUT_OF_CATALOGUE))
+    every = effects.on(rig.kind, (*effects.CATALOGUE, *effects.GEOMETRY, *effects.OUT_OF_CATALOGUE))
     rows = [
         limits.table(rig, every, pair, LIMIT_SEED, 2 if rig.kind == "platform" else 1)
         for pair in track(PAIRS[rig.kind], "pairs of excitations")

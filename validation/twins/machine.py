@@ -96,3 +96,9 @@ class Body(NamedTuple):
     panhard_friction: float = 0.0  # N m s/rad, of the joints of each rod
     backlash: float = 0.0  # m, play between a rod and its position sensor
     frame_compliance: float = 0.0  # m/N, of what each actuator stands on
+    # By how much it is not built as drawn, m: joints, and links longer than their joints are apart at rest.
+    base_joint_2_y_error: float = 0.0
+    platform_joint_1_x_error: float = 0.0
+    base_joint_5_z_error: float = 0.0
+    actuator_3_length_error: float = 0.0
+    panhard_2_length_error: float = 0.0

@@ -47,10 +47,12 @@ READINGS = 9
 
 @lru_cache(maxsize=64)
 def mechanism(body: Body) -> Mechanism:
-    """The mechanism with this payload."""
+    """The mechanism with this payload, as it is built."""
     numbers = dict(MECHANISM)
     for name in ("payload_mass", "payload_cog_x", "payload_cog_y", "payload_cog_z"):
         numbers[name] = getattr(body, name)
+    for name in ("base_joint_2_y", "platform_joint_1_x", "base_joint_5_z"):
+        numbers[name] += getattr(body, f"{name}_error")
     bodies = mechanism_of(cast(Any, SimpleNamespace(**numbers)))["bodies"]
 
     def point(name: str) -> list[float]:
@@ -60,7 +62,10 @@ def mechanism(body: Body) -> Mechanism:
         np.array([point(f"{kind}_joint_{i}") for i in range(1, 7)]) for kind in ("base", "platform")
     )
     reference = np.array(point("reference_point"))
-    return mechanism_at_rest(bodies, base, joint, reference, numbers["gravity"])
+    built = mechanism_at_rest(bodies, base, joint, reference, numbers["gravity"])
+    longer = np.zeros(len(built.length))
+    longer[2], longer[4] = body.actuator_3_length_error, body.panhard_2_length_error
+    return built._replace(length=built.length + longer)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The commands `sms export fmu` and `sms export c-params`."""
+"""The commands `sms export fmu`, `sms export c-params` and `sms export table-params`."""
 
 from __future__ import annotations
 
@@ -38,6 +38,25 @@ def c_params(
 
     write_text_atomically(out, c_header(load_params(file), file.name))
     print(f"written: {out}")
+
+
+@export_app.command(
+    epilog="Example: **ik_tables --height 0.5 --range 0.1 --step 0.001 -o table.npz --params $(sms export table-params "
+    "geometry.toml)** makes the table of the machine as built, and holds it against the solver."
+)
+def table_params(
+    file: Annotated[Path, typer.Argument(help="A parameter file, such as geometry.toml.")],
+) -> None:
+    """Print the parameters of a file as NAME=VALUE in SI, which `ik_tables --params` takes.
+
+    What one leg's sensors have more is left out: a table is of true extensions.
+    """
+    from sms.parameter_files import read_values  # noqa: PLC0415
+    from sms.parameters import is_of_leg  # noqa: PLC0415
+
+    for name, value in read_values(file).items():
+        if not is_of_leg(name):
+            print(f"{name}={value!r}")
 
 
 @export_app.command(

@@ -212,15 +212,16 @@ def bad_input() -> Iterator[None]:
         raise InputError(str(problem)) from None
 
 
-def _is_file(setting: str) -> bool:
+def is_file(setting: str) -> bool:
+    """Whether a --set names a parameter file."""
     return "=" not in setting and setting.endswith(".toml")
 
 
 def machine(settings: Sequence[str]) -> Params:
     """The default parameters with each "name=value" and each file (.toml) set. InputError, OutOfRangeError."""
     params: Params = Params()
-    for setting in sorted(settings, key=lambda s: not _is_file(s)):
-        if _is_file(setting):
+    for setting in sorted(settings, key=lambda s: not is_file(s)):
+        if is_file(setting):
             params = load_params(setting)
             continue
         name, equals, value = (part.strip() for part in setting.partition("="))

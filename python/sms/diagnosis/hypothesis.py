@@ -21,6 +21,7 @@ from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
 from sms.parameters import (
+    GEOMETRY,
     LINEARITY,
     MAPS,
     PARAMETERS,
@@ -190,8 +191,10 @@ def baseline_hypothesis(data: Data, effects: Sequence[Effect]) -> Hypothesis:
     start = rig.start()
     names = [n for n, d in rig.parameters.items() if d.fit]
     of_effects = [n for e in effects for n in e.parameters if n not in names]
-    # Of a cylinder the noise is not declared, and what its sensors are calibrated to neither.
-    known = [n for n in of_effects if n in rig.parameters or common_parameter(n) not in SENSORS]
+    # Of a cylinder the noise is not declared, and what its sensors are calibrated to neither. Where joints are moves
+    # on request only: each is a run of the mechanism for every sample.
+    held = GEOMETRY if data.identify.whitened else SENSORS
+    known = [n for n in of_effects if n in rig.parameters or common_parameter(n) not in held]
     if (
         data.identify.whitened
     ):  # a simulation depends on every parameter, not only on those of effects

@@ -24,6 +24,8 @@ from sms.io.rig import Rig
 from sms.io.signals import LEGS, SIGNALS, label, without_leg
 from sms.parameters import PARAMETERS, common_parameter, is_of_leg
 
+LINKS = (*(f"actuator {i}" for i in LEGS), *(f"Panhard rod {i}" for i in LEGS))
+"""The links between ground and platform, in the order of their joints."""
 PARTS_IN_WORDS = {
     "chamber_pressure": "chamber pressures",
     "proportional_gain": "proportional gain",
@@ -33,6 +35,14 @@ PARTS_IN_WORDS = {
     "position_gain": "position gain",
     "velocity_gain": "velocity gain",
     "acceleration_gain": "acceleration gain",
+    **{
+        f"{side}_joint_{i}_{axis}": f"{side} joint of {link} ({axis})"
+        for side in ("base", "platform")
+        for i, link in enumerate(LINKS, 1)
+        for axis in "xyz"
+    },
+    **{f"actuator_length_offset_{i}": f"actuator {i}" for i in LEGS},
+    **{f"panhard_length_offset_{i}": f"Panhard rod {i}" for i in LEGS},
 }
 
 
@@ -70,14 +80,16 @@ class Effect:
 
     def plausible_range(self, reference: float) -> tuple[float, float]:
         """The plausible values of its parameter, SI; `reference` is the declared value, that of all legs."""
+        low, high = self.plausible_change(reference)
+        about = 0.0 if self.kind == "missing" or is_of_leg(self.parameters[0]) else reference
+        return about + low, about + high
+
+    def plausible_change(self, reference: float) -> tuple[float, float]:
+        """By how much its parameter may plausibly differ from what is declared, SI."""
         low, high = self.plausible
-        if self.kind == "missing":
+        if self.kind == "missing" or self.absolute:
             return low, high
-        if not self.absolute:
-            low, high = reference * low, reference * high
-        if is_of_leg(self.parameters[0]):
-            return low, high
-        return reference + low, reference + high
+        return reference * low, reference * high
 
 
 def _effects(entry: dict[str, Any]) -> Iterable[Effect]:

@@ -91,7 +91,7 @@ def _why_blind(effect: Effect, fitted: Fitted, data: Data, raw: Array, column: A
             "their declared uncertainty"
         )
     name = effect.parameters[0]
-    low, high = effect.plausible_range(data.rig.declared(common_parameter(name)).value)
+    low, high = effect.plausible_change(data.rig.declared(common_parameter(name)).value)
     if data.identify.whitened:  # the residual still holds what the effect itself may have left
         error = 1.0 / float(np.linalg.norm(column))
     else:

@@ -265,7 +265,8 @@ def without_unshifted(
     h = baseline.hypothesis
     for members in outcome.found:
         name = members[0].effect.parameters[0]
-        if abs(final.params[name] - h.start[name]) <= h.known.get(name, 0.0):
+        declared = data.rig.declared(name).uncertainty
+        if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
             for trial in members:
                 trial.accepted, trial.reason = False, "beside other causes within what is declared"
             kept = [m for m in outcome.found if m is not members]
