@@ -205,3 +205,10 @@ def test_a_second_parameter_that_records_hardly_feel_stays_within_its_range(tmp_
     start = changed(baseline.start, list(without), np.array(list(without.values())))
     fitted = fit(replace(baseline, start=start).with_effect(effect), data.identify, start)
     assert second in fitted.movable
+
+
+def test_a_mechanism_without_an_inclinometer_is_not_asked_for() -> None:
+    joint = {e.key: e for e in catalogue("platform")}["joint_position of base_joint_2_y"]
+    extensions = {f"extension_{leg}": None for leg in (1, 2, 3)}
+    assert "seen from roll and pitch" in joint.not_measured(extensions)
+    assert joint.not_measured(extensions | {"pitch": None}) == ""

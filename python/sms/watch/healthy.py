@@ -164,7 +164,7 @@ def learn(
     rig = _holding(rig, runs[0])
     watched = as_watched(rig)
     noise = noise_of(rig, kind, runs)
-    effects = [e for e in effects_of(rig) if not (e.of_sensor and e.signal not in runs[0].signals)]
+    effects = [e for e in effects_of(rig) if not e.not_measured(runs[0].signals)]
     chosen = _evenly(runs, round(FIT_LENGTH / SEGMENT))
     together = Runs(watched, chosen, noise, kind)
     data = Data(watched, together, together, reference=together)

@@ -111,7 +111,7 @@ def detection_limits(rig: Rig | str | Path, progress: Progress = lambda text, do
         for s in kind.outputs
         if (all(s in r.signals for r in records) if records else s in rig.signals)
     )
-    effects = [e for e in effects_of(rig) if not (e.of_sensor and e.signal not in channels)]
+    effects = [e for e in effects_of(rig) if not e.not_measured(channels)]
     every = len(records) + len(kind.menu)
     titles: list[str] = []
     columns: list[list[Limit]] = []

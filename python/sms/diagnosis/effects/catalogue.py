@@ -7,7 +7,7 @@ platform.toml what the platform has beyond it. A rig file may name a file with e
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
@@ -64,6 +64,8 @@ class Effect:
     separated_by: str
     of_sensor: bool = False
     """`signal` names a measured signal, without which there is nothing to test."""
+    seen_in: tuple[str, ...] = ()
+    """Signals of which one has to be measured; none: it shows in what every such rig measures."""
     step: float | None = None
     """The size at which its sensitivity is taken, where it has no slope at its neutral value."""
     absolute: bool = False
@@ -77,6 +79,14 @@ class Effect:
     def key(self) -> str:
         """Its name in messages: "sensor_gain of rod_force"."""
         return self.id if self.signal is None else f"{self.id} of {self.signal}"
+
+    def not_measured(self, signals: Container[str]) -> str:
+        """What a rig with these signals lacks to ask for it, in words; empty where it can be asked."""
+        if self.of_sensor and self.signal not in signals:
+            return f"{self.signal} is not measured"
+        if self.seen_in and not any(s in signals for s in self.seen_in):
+            return f"it is seen from {' and '.join(self.seen_in)}, of which none is measured"
+        return ""
 
     def plausible_range(self, reference: float) -> tuple[float, float]:
         """The plausible values of its parameter, SI; `reference` is the declared value, that of all legs."""
@@ -111,6 +121,7 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
             needs=tuple(entry["needs"]),
             plausible=_plausible(entry["plausible"], place),
             of_sensor=of_sensor,
+            seen_in=tuple(entry.get("seen_in", ())),
             step=entry.get("step"),
             absolute=entry.get("absolute", False),
             chambers=entry.get("chambers"),
