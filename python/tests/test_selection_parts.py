@@ -170,12 +170,15 @@ def test_what_ends_up_within_what_is_declared_of_it_is_no_cause(
 
     hypothesis = SimpleNamespace(start={"mass": 3.6, "leak": 0.0}, known={"mass": 0.2})
     baseline = cast(Any, SimpleNamespace(hypothesis=hypothesis))
+    # Of what the baseline does not free, the declared half width counts.
+    declared = SimpleNamespace(uncertainty=1e-10)
+    data = cast(Any, SimpleNamespace(rig=SimpleNamespace(declared=lambda name: declared)))
     mass, leak = found("mass"), found("leak")
     outcome = Outcome(cast(Any, None), [], [mass, leak])
 
     def without(value: float) -> Outcome | None:
         final = cast(Any, SimpleNamespace(params={"mass": value, "leak": 1e-9}))
-        return stepwise.without_unshifted(outcome, final, baseline, cast(Any, None))
+        return stepwise.without_unshifted(outcome, final, baseline, data)
 
     assert without(3.9) is None
     fewer = without(3.7)

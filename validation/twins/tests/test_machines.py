@@ -302,7 +302,7 @@ def test_limit_is_where_the_effect_is_seen() -> None:
 def test_tables_of_limits_know_every_effect(kind: str) -> None:
     for pair in PAIRS[kind]:
         rows = limits.read(kind)[pair_key(pair)]
-        every = effects.on(kind, (*effects.CATALOGUE, *effects.OUT_OF_CATALOGUE))
+        every = effects.on(kind, (*effects.CATALOGUE, *effects.OUT_OF_CATALOGUE, *effects.GEOMETRY))
         assert set(rows) == {effect.key for effect in every if effect.drawn_from is None}
 
 
