@@ -61,7 +61,7 @@ def test_derivatives_are_those_of_the_residual(machine: Machine) -> None:
 
 def test_attitude_of_a_drawn_machine(machine: Machine) -> None:
     found = calibrate_poses(machine.rig)
-    before, after = found.kept_aside.attitude
+    before, after = found.validation.attitude
     assert found.converged
     assert after < 0.2 * before
     told = {k.words: k.told for k in found.combinations}
@@ -78,7 +78,7 @@ def test_a_wrong_reading_is_reported(machine: Machine) -> None:
     finally:
         rig.fitted.pose[7, 0] -= np.radians(1.0)
     assert [o.row for o in found.outliers] == [8]
-    before, after = found.kept_aside.attitude
+    before, after = found.validation.attitude
     assert after < 0.2 * before
 
 
@@ -113,7 +113,7 @@ def test_command(machine: Machine, tmp_path: Path) -> None:
         app, ["calibrate", "geometry", str(rig), "--out", str(tmp_path / "out")]
     )
     assert result.exit_code == 0, result.output
-    assert "poses kept aside" in result.output
+    assert "validation poses" in result.output
     written = sorted(p.name for p in (tmp_path / "out").iterdir())
     assert written == ["calibration.json", "geometry.toml", "report.html"]
 

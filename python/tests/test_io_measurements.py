@@ -41,23 +41,6 @@ def check_two_rates(table: Table, stroke: str, pressure: str) -> None:
     assert any("straight lines" in r.message for r in table.remarks)
 
 
-@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
-def test_of_a_broken_mdf_one_sentence_is_said_and_nothing_is_printed(tmp_path: Path) -> None:
-    asammdf = pytest.importorskip("asammdf")
-    log = asammdf.MDF(version="4.10")
-    log.append([asammdf.Signal(STROKE, TIME, name="stroke", unit="mm")])
-    file = Path(log.save(tmp_path / "whole.mf4", overwrite=True))
-    log.close()
-    spoilt = bytearray(file.read_bytes())
-    spoilt[64:72] = b"no block"  # of which the header begins
-    for ending in (".mf4", ".mdf"):
-        broken = tmp_path / f"broken{ending}"
-        broken.write_bytes(spoilt)
-        with pytest.raises(InputError, match="not a readable"):
-            read(broken)
-    gc.collect()  # destructors run here, if they have not
-
-
 # ---- measurement systems -------------------------------------------------------------------------
 
 
@@ -74,6 +57,23 @@ def test_mdf_is_read_by_signal(tmp_path: Path, version: str, name: str) -> None:
     file = Path(saved).rename(tmp_path / name)
     assert not is_can_log(file)
     check_two_rates(read(file), "stroke [mm]", "pressure [bar]")
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_of_a_broken_mdf_one_sentence_is_said_and_nothing_is_printed(tmp_path: Path) -> None:
+    asammdf = pytest.importorskip("asammdf")
+    log = asammdf.MDF(version="4.10")
+    log.append([asammdf.Signal(STROKE, TIME, name="stroke", unit="mm")])
+    file = Path(log.save(tmp_path / "whole.mf4", overwrite=True))
+    log.close()
+    spoilt = bytearray(file.read_bytes())
+    spoilt[64:72] = b"no block"  # of which the header begins
+    for ending in (".mf4", ".mdf"):
+        broken = tmp_path / f"broken{ending}"
+        broken.write_bytes(spoilt)
+        with pytest.raises(InputError, match="not a readable"):
+            read(broken)
+    gc.collect()  # destructors run here, if they have not
 
 
 def test_tdms_is_read_with_its_own_times(tmp_path: Path) -> None:

@@ -64,7 +64,7 @@ def draw(rng: np.random.Generator, poses: int, tracker: bool) -> Machine:
         fitted.pose + noise * rng.standard_normal(fitted.pose.shape),
         fitted.row,
     )
-    return Machine(replace(rig, fitted=noisy, kept_aside=unseen), truth, unseen)
+    return Machine(replace(rig, fitted=noisy, validation=unseen), truth, unseen)
 
 
 def _extensions(rng: np.random.Generator, count: int) -> Array:
@@ -112,7 +112,7 @@ def calibrate_one(machine: Machine) -> Trial:
     c = calibrate_poses(machine.rig)
     seconds = time.perf_counter() - begin
     off = np.array([abs(machine.truth[f.unknown.name] - f.value) / f.deviation for f in c.found])
-    before, after = c.kept_aside.attitude
+    before, after = c.validation.attitude
     _, singular, directions = np.linalg.svd(c.scaled, full_matrices=False)
     error = np.array(
         [(machine.truth[f.unknown.name] - f.value) / f.unknown.deviation for f in c.found]

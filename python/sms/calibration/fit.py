@@ -1,4 +1,4 @@
-"""From poses to the mechanism as built: values, covariance, outliers, and the judgement on poses kept aside.
+"""From poses to the mechanism as built: values, covariance, outliers, and the judgement on validation poses.
 
 The equations and the search (Ceres) are the core's, libsms/estimation/poses.hpp. Every parameter has a prior, its
 tolerance on the drawing; what the poses say is how much narrower its interval has become.
@@ -98,7 +98,7 @@ class Outlier:
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """Errors on the poses kept aside, measured less predicted, (n, 6) in rad and m."""
+    """Errors on the validation poses, measured less predicted, (n, 6) in rad and m."""
 
     before: Array
     after: Array
@@ -128,7 +128,7 @@ class Calibrated:
     outliers: tuple[Outlier, ...]
     errors_before: Array  #: of the fitted poses, (n, 6)
     errors_after: Array
-    kept_aside: Judgement
+    validation: Judgement
     iterations: int
     converged: bool
     scaled: Array  #: (rows, parameters) whitened Jacobian over the prior's deviations, with the weights of the loss
@@ -178,7 +178,7 @@ def calibrate_poses(
         outliers=outliers,
         errors_before=rig.fitted.pose - problem.predict(start),
         errors_after=after,
-        kept_aside=judge(rig, start, fit.params),
+        validation=judge(rig, start, fit.params),
         iterations=fit.iterations,
         converged=fit.converged,
         scaled=scaled,
@@ -191,11 +191,11 @@ def covariance_of(scaled: Array) -> Array:
 
 
 def judge(rig: PosesRig, before: _core.LegParams, after: _core.LegParams) -> Judgement:
-    """The poses kept aside, with the nominal and with the calibrated mechanism."""
-    if not len(rig.kept_aside):
+    """The validation poses, with the nominal and with the calibrated mechanism."""
+    if not len(rig.validation):
         return Judgement(np.empty((0, 6)), np.empty((0, 6)))
-    problem = problem_of(rig.kept_aside, rig, before)
-    measured = rig.kept_aside.pose
+    problem = problem_of(rig.validation, rig, before)
+    measured = rig.validation.pose
     return Judgement(measured - problem.predict(before), measured - problem.predict(after))
 
 

@@ -23,14 +23,16 @@ def sentences(c: Calibrated, proposals: Sequence[Proposal]) -> list[str]:
         f"{len(told)} of {len(c.found)} parameters are measured by these poses; {held} stay as well known as the "
         "drawing says, alone; what they do together is known better than each",
     ]
-    if len(c.rig.kept_aside) and np.isfinite(c.kept_aside.attitude[0]):
-        before, after = np.degrees(c.kept_aside.attitude)
+    if len(c.rig.validation) and np.isfinite(c.validation.attitude[0]):
+        before, after = np.degrees(c.validation.attitude)
         said.append(
-            f"attitude on {len(c.rig.kept_aside)} poses kept aside: {before:.3f} deg off before, {after:.3f} deg after "
+            f"attitude on {len(c.rig.validation)} validation poses: {before:.3f} deg off before, {after:.3f} deg after "
             "(root mean square, with the noise of the inclinometer)"
         )
-    elif not len(c.rig.kept_aside):
-        said.append("no poses were kept aside: nothing says how well the result holds elsewhere")
+    elif not len(c.rig.validation):
+        said.append(
+            "there are no validation poses: nothing says how well the result holds elsewhere"
+        )
     said += [f"not told by these poses: {k.words}" for k in c.combinations if not k.told]
     said += [
         f"pose {o.row} does not fit: {o.deviations:.1f} standard deviations off" for o in c.outliers
@@ -46,7 +48,7 @@ def sentences(c: Calibrated, proposals: Sequence[Proposal]) -> list[str]:
 
 def to_dict(c: Calibrated, proposals: Sequence[Proposal]) -> dict[str, Any]:
     """calibration.json, SI."""
-    before, after = c.kept_aside.attitude
+    before, after = c.validation.attitude
     return {
         "title": c.rig.title,
         "poses": len(c.rig.fitted),
@@ -77,8 +79,8 @@ def to_dict(c: Calibrated, proposals: Sequence[Proposal]) -> dict[str, Any]:
             }
             for o in c.outliers
         ],
-        "kept_aside": {
-            "poses": len(c.rig.kept_aside),
+        "validation": {
+            "poses": len(c.rig.validation),
             "attitude_rms_before": before,
             "attitude_rms_after": after,
         },

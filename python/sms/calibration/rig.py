@@ -29,7 +29,7 @@ TOLERANCES = {
 """Half widths of what the drawing says, two standard deviations: unit and default."""
 LEAST_POSES = 6
 KEPT_ASIDE = 5
-"""Every so many poses one is kept aside, where no file is named for that."""
+"""Every so many poses one is a validation pose, where no file of them is named."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class PosesRig:
     path: Path
     files: tuple[Path, ...]
     fitted: Poses
-    kept_aside: Poses
+    validation: Poses
     extension_noise: Array  #: (3,) standard deviations
     pose_noise: Array  #: (6,)
     tolerances: Mapping[str, float]  #: half widths, by the names of TOLERANCES
@@ -71,7 +71,7 @@ def load_poses(path: Path) -> PosesRig:
         raise InputError(f"{path}: not TOML ({problem}); correct that line") from None
     _known(content, ("rig", "noise", "tolerances"), f"{path}")
     rig = _table(content, "rig", path)
-    _known(rig, ("name", "kind", "poses", "kept_aside"), f"{path}, [rig]")
+    _known(rig, ("name", "kind", "poses", "validation"), f"{path}, [rig]")
     if rig.get("kind") != "poses":
         raise InputError(
             f"{path}, [rig] kind: '{rig.get('kind')}' holds no poses; sms calibrate geometry reads kind 'poses'"
@@ -83,8 +83,8 @@ def load_poses(path: Path) -> PosesRig:
     file = path.parent / str(rig["poses"])
     poses = _read(file)
     files = [path, file]
-    if "kept_aside" in rig:
-        other = path.parent / str(rig["kept_aside"])
+    if "validation" in rig:
+        other = path.parent / str(rig["validation"])
         fitted, kept = poses, _read(other)
         files.append(other)
     else:

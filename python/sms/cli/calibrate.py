@@ -55,7 +55,7 @@ def geometry(
 
     One row a pose: the three extensions as read and some of roll, pitch, height, yaw, x, y. Every parameter is held
     by its tolerance on the drawing; what the poses cannot tell is named, poses that do not fit are reported one by
-    one, and the result is judged on poses kept aside. The poses to measure next keep 20 mm from the stroke's ends.
+    one, and the result is judged on validation poses. The poses to measure next keep 20 mm from the stroke's ends.
     """
     from sms.calibration.fit import calibrate_poses  # noqa: PLC0415
     from sms.calibration.proposal import propose  # noqa: PLC0415

@@ -217,10 +217,15 @@ def is_file(setting: str) -> bool:
     return "=" not in setting and setting.endswith(".toml")
 
 
+def files_first(settings: Sequence[str]) -> list[str]:
+    """Each --set in the order in which it holds: what is set by name goes before what a file says."""
+    return sorted(settings, key=lambda setting: not is_file(setting))
+
+
 def machine(settings: Sequence[str]) -> Params:
     """The default parameters with each "name=value" and each file (.toml) set. InputError, OutOfRangeError."""
     params: Params = Params()
-    for setting in sorted(settings, key=lambda s: not is_file(s)):
+    for setting in files_first(settings):
         if is_file(setting):
             params = load_params(setting)
             continue

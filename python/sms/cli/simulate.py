@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sms.cli.assets import Assets
-from sms.cli.mechanism import AsJson, Settings, bad_input, is_file
+from sms.cli.mechanism import AsJson, Settings, bad_input, files_first, is_file
 from sms.data import scenario_file
 from sms.errors import InputError
 from sms.parameters import PARAMETERS, is_of_leg
@@ -111,7 +111,7 @@ def settings_in_si(settings: list[str]) -> dict[str, float]:
     from sms.scenario.load import parameter_value  # noqa: PLC0415
 
     values: dict[str, float] = {}
-    for setting in sorted(settings, key=lambda s: not is_file(s)):
+    for setting in files_first(settings):
         if is_file(setting):
             said = read_values(setting)
             values |= {name: value for name, value in said.items() if not is_of_leg(name)}

@@ -69,8 +69,6 @@ def _why_not_asked(effect: Effect, data: Data) -> str:
     signals = data.identify.motions[0].signals
     if reason := effect.not_measured(signals):
         return reason
-    if not data.identify.whitened and effect.signal is not None and effect.signal not in signals:
-        return f"{effect.signal} is not measured"
     if all(data.rig.declared(n).fit for n in effect.parameters):
         return "declared as unknown and fitted anyway: its value is part of the baseline"
     return ""
