@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from plant_support import write_bench
+from plant_support import write_bench, write_platform
 from sms.diagnosis.adequacy.misdeclared_signals import (
     misdeclared_signals,
     of_another_machine,
@@ -81,6 +81,20 @@ def test_a_slip_is_said_with_the_line_to_write(
     (finding,) = found(request.getfixturevalue(machine), slip)
     assert (finding.severity, finding.signal) == ("error", signal), finding
     assert line in finding.remedy
+
+
+def test_a_valve_that_is_nearly_clogged_turns_no_sign(tmp_path: Path) -> None:
+    """Its piston moves far less than the model, and the same way."""
+    assert found(write_bench(tmp_path, 3, {"mass_flow_gain": 0.25})) == ()
+
+
+@pytest.mark.parametrize("signal", ["extension_2", "valve_command_3"])
+def test_the_sign_of_one_leg_is_said(signal: str, tmp_path: Path) -> None:
+    turned = {"extension_2": 0.4, "valve_command_3": 10.0}[signal]
+    rig = write_platform(tmp_path, 4, {}, 2.2)
+    (finding,) = found(rig, lambda x: {signal: turned - x[signal]})
+    assert finding.signal == signal
+    assert "write scale = -1" in finding.remedy
 
 
 def test_a_loop_whose_pressures_are_gauge_is_said_too(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ no logger has the rate of the record, and then the rates that loggers have are t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -50,16 +50,19 @@ class Slip:
     undone: Callable[[Run], Run]
     windows: float = NEARLY_ALL
     """Share of the windows that have to be better for it to be believed."""
+    turned: tuple[str, ...] = ()
+    """The signals whose sign it changes."""
 
 
 def misdeclared_signals(data: Data, start: _core.Params) -> tuple[Finding, ...]:
     """The slip that explains the records, if there is one; `start` are the declared parameters."""
-    slips = list(slips_of(data))
-    if not slips:
-        return ()
     windows = len(data.identify.problem.windows)
     few = sorted({round(k) for k in np.linspace(0, windows - 1, min(SCREENED, windows))})
     excerpt = data.identify.excerpt(few)
+    agrees = agreement(excerpt, residual_of(excerpt, start))
+    slips = [slip for slip in slips_of(data) if not (slip.turned and _along(slip.turned, agrees))]
+    if not slips:
+        return ()
     before = _left(excerpt, start)
     after = [_left(_undone(excerpt, slip), start) for slip in slips]
     best = min(range(len(slips)), key=lambda k: float(np.mean(np.log1p(after[k]))))
@@ -83,6 +86,28 @@ def misdeclared_signals(data: Data, start: _core.Params) -> tuple[Finding, ...]:
             slip.remedy,
         ),
     )
+
+
+def agreement(runs: Runs, residual: Array) -> dict[str, float]:
+    """By channel how far the recorded signal goes the way of the predicted one: the product of what both change within
+    a window, summed over all. residual: (rows,), predicted less recorded, over the noise.
+    """
+    table = residual.reshape(-1, len(runs.channels))
+    products = dict.fromkeys(runs.channels, 0.0)
+    for w in runs.problem.windows:
+        first = w.row // len(runs.channels)
+        for k, channel in enumerate(runs.channels):
+            signal = runs.motions[w.record].signals[channel][w.first : w.first + w.samples]
+            recorded = (signal - signal.mean()) / runs.noise[channel]
+            products[channel] += float(recorded @ (recorded + table[first : first + w.samples, k]))
+    return products
+
+
+def _along(turned: Sequence[str], agrees: Mapping[str, float]) -> bool:
+    """Whether what these signals move goes the way of the prediction: their own legs' pistons, else every pressure."""
+    legs = [signal.removeprefix(without_leg(signal)) for signal in turned]
+    pistons = [c for c in (f"extension{leg}" for leg in legs) if c in agrees]
+    return sum(agrees[c] for c in pistons or agrees) > 0.0
 
 
 def _undone(runs: Runs, slip: Slip) -> Runs:
@@ -213,6 +238,7 @@ def _reversed(rig: Rig, stem: str, signals: list[str]) -> Iterator[Slip]:
                 f"{whose} looks reversed",
                 f'write scale = {-source.scale:g}, offset = "{offset:.6g} {unit}" in [signals] {group[0]}',
                 _with(lambda x, group=group, twice=twice: {s: twice - x[s] for s in group}),  # type: ignore[misc]
+                turned=tuple(group),
             )
 
 
