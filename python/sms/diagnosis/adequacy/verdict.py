@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from sms.diagnosis.adequacy.hysteresis import Hysteresis, hysteresis
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy, inconstancy
 from sms.diagnosis.adequacy.residual_energy import Left
-from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.hypothesis import Data, Fitted, with_sensitivities
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.outcome import Outcome
@@ -29,7 +29,8 @@ def _stands(
     member: Trial, law: Inconstancy | Hysteresis, nearest: Fitted, data: Data, adequate: bool
 ) -> bool:
     """Whether another of the class is what it is called, and leaves less than the nearest one with that other law."""
-    if _not_as_named(member, member.fitted, data, adequate) is not None:
+    fitted = with_sensitivities(member.fitted, data.identify)
+    if _not_as_named(member, fitted, data, adequate) is not None:
         return False
     if isinstance(law, Hysteresis):
         return True
