@@ -53,6 +53,30 @@ class Growing:
         return self.evaluate(params, [NAME] * knots)[1]
 
 
+@dataclass(frozen=True)
+class Answering:
+    """A window of one sample for each answer to a hidden input."""
+
+    answers: tuple[float, ...]
+
+    @property
+    def rows(self) -> int:
+        return len(self.answers)
+
+    @property
+    def windows(self) -> Sequence[Stretch]:
+        return [Stretch(0, k, 1, k, 1) for k in range(self.rows)]
+
+    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
+        return np.zeros(self.rows), np.zeros((self.rows, len(free)))
+
+    def errors(self, params: _core.Params) -> Array:
+        return np.zeros(self.rows)
+
+    def hidden(self, params: _core.Params, knots: int) -> Array:
+        return np.repeat(np.array(self.answers)[:, None], knots, axis=1)
+
+
 def test_what_stays_within_numbers_is_left_as_it_is() -> None:
     plain = Growing(100.0, np.nan, np.nan)
     params = Params()
@@ -90,3 +114,12 @@ def test_a_fit_that_begins_where_a_window_runs_away_ends_at_the_truth(
     found = fit_windows(held, start, [Free(NAME, 0.0, 500.0, 0.0, 60.0)])
     assert found.params[NAME] == pytest.approx(TRUTH, rel=1e-4)
     assert np.all(np.isfinite(found.jacobian))
+
+
+def test_a_hidden_input_that_one_window_answers_without_bound_is_not_answered_there() -> None:
+    """Whitened with it, residuals would be 1e154 and more, whose squares are no numbers."""
+    held = WithinNumbers(Answering((1.0, 3.0, 1e40, 0.5, 2.0)), PARAMETERS)
+    inputs = held.hidden(Params(), 1)
+    assert [float(w) for w in inputs[:, 0]] == [1.0, 3.0, 0.0, 0.5, 2.0]
+    unanswered = WithinNumbers(Answering((0.0, 0.0, 0.0, 0.5, 2.0)), PARAMETERS)
+    assert float(unanswered.hidden(Params(), 1)[3, 0]) == 0.5

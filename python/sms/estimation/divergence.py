@@ -24,8 +24,9 @@ STEEPEST = 1e9
 """Of a derivative, in units of the noise over the parameter's whole range: a millionth of that range would move
 readings by as much as no fit can follow, and one such window would outweigh all others. Numerics: windows that do not
 diverge stay below 1e8."""
-LARGEST_INPUT = 1e100
-"""Of a derivative per unit of a hidden input, whose range nobody knows: its square is a number still."""
+FARTHER_THAN_OTHERS = 1e6
+"""Of a window's derivative per unit of a hidden input, whose range nobody knows: over the median window's. Numerics:
+the noise, one in these units, is added to its square, and is still there in a double."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +56,14 @@ class WithinNumbers:
         return _held(self.problem.errors(params))
 
     def hidden(self, params: _core.Params, knots: int) -> Array:
-        """(rows, hidden inputs x knots), as WindowProblem has them; all of them finite."""
-        return self._flat_where_steep(self.problem.hidden(params, knots), np.array(LARGEST_INPUT))
+        """(rows, hidden inputs x knots), as WindowProblem has them; all of them finite, and none beyond comparison."""
+        inputs = self.problem.hidden(params, knots)
+        if not self.windows:
+            return inputs
+        farthest = [np.max(np.abs(inputs[w.row : w.row + w.rows]), axis=0) for w in self.windows]
+        usual = np.quantile(np.nan_to_num(farthest, nan=np.inf), 0.5, axis=0, method="lower")
+        steepest = np.where(usual > 0.0, FARTHER_THAN_OTHERS * usual, np.inf)
+        return self._flat_where_steep(inputs, np.minimum(steepest, np.finfo(float).max))
 
     def _flat_where_steep(self, jacobian: Array, steepest: Array) -> Array:
         for w in self.windows:
