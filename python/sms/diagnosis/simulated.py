@@ -53,7 +53,7 @@ from sms.diagnosis.result import Cause, Diagnosis, NotTestable, ParameterValue, 
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.selection.stepwise import stepwise_selection, without_unshifted
+from sms.diagnosis.selection.stepwise import stepwise_selection, without_untenable
 from sms.diagnosis.wording_simulated import (
     conclusion,
     nearest_in_words,
@@ -141,7 +141,7 @@ def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted,
     """The final model by generalised least squares, and the causes whose sizes in it are beyond what is declared."""
     final = generalised(outcome.final, data) if outcome.found else outcome.final
     while (
-        outcome.found and (fewer := without_unshifted(outcome, final, baseline, data)) is not None
+        outcome.found and (fewer := without_untenable(outcome, final, baseline, data)) is not None
     ):
         outcome = fewer
         final = generalised(outcome.final, data) if outcome.found else outcome.final

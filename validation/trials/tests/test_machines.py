@@ -7,6 +7,7 @@ from json import dumps
 from pathlib import Path
 
 import pytest
+from sms.diagnosis import diagnose
 
 from validation.random_cases import SEED
 from validation.trials.answers import answered
@@ -122,20 +123,23 @@ def test_one_drawn_bench_of_each_sort(sort: str) -> None:
 @pytest.mark.full
 @pytest.mark.parametrize(
     ("seed", "hidden"),
-    [(600002, "exponential_friction"), (700018, "tube"), (700068, "exponential_friction")],
+    [
+        (600002, "exponential_friction"),
+        (700018, "tube"),
+        (700068, "exponential_friction"),
+        # Far from where the model stands, and other numbers make up for most of it.
+        (700090, "presliding"),
+        (300024, "heat_transfer"),
+        # So far that the piston hardly moves where the model's runs from end to end: no sign is wrong.
+        (600002, "flow_conductance"),
+    ],
 )
-def test_a_bench_whose_unseen_records_do_not_feel_it(seed: int, hidden: str) -> None:
-    found = run_task(Task("bench", seed, "catalogue", 3.0))
-    assert found.hidden == [hidden]
-    assert found.right, found
-
-
-@pytest.mark.full
-@pytest.mark.parametrize(("seed", "hidden"), [(700090, "presliding"), (300024, "heat_transfer")])
-def test_a_bench_whose_effect_is_far_from_where_the_model_stands(seed: int, hidden: str) -> None:
-    found = run_task(Task("bench", seed, "catalogue", 3.0))
-    assert found.hidden == [hidden]
-    assert found.right, found
+def test_a_bench_whose_effect_was_missed_once(seed: int, hidden: str, tmp_path: Path) -> None:
+    draw("bench", seed, tmp_path / "rig", tmp_path / "truth.json", hidden, 3.0)
+    answer = diagnose(tmp_path / "rig" / "rig.toml")
+    (cause,) = answer.causes
+    assert hidden in cause.members, answer.sentence
+    assert len(cause.members) <= 3
 
 
 @pytest.mark.parametrize(

@@ -48,21 +48,22 @@ class Step:
     """(rows,) of the excerpt's residual."""
 
 
-def best_steps(effects: Sequence[Effect], current: Fitted, data: Data) -> list[Step]:
-    """Of each effect on top of a model, on the windows that tell most."""
-    base = _base(current, data)
+def best_steps(
+    effects: Sequence[Effect], current: Fitted, data: Data, declared: bool
+) -> list[Step]:
+    """Of each effect on top of a model, on the windows that tell most.
+
+    declared: from what is declared known, in place of what the model made of it. A change that other numbers have made
+    up for is then in plain sight.
+    """
+    base = _as_declared(current) if declared else current.params
     left = beyond_healthy(data, data.identify, residual_of(data.identify, base))
     excerpt = data.identify.excerpt(telling_windows(data.identify, left))
     here = logarithms(excerpt, residual_of(excerpt, base))
     return [best_step(e, current, base, data, excerpt, here) for e in effects]
 
 
-def _base(current: Fitted, data: Data) -> _core.Params:
-    """Where finite steps are tried from: the model as it stands. Where records of the healthy machine told its numbers,
-    they are held there: a change that other numbers have made up for is then in plain sight.
-    """
-    if data.healthy is None:
-        return current.params
+def _as_declared(current: Fitted) -> _core.Params:
     known = list(current.hypothesis.known)
     return changed(current.params, known, np.array([current.hypothesis.start[n] for n in known]))
 

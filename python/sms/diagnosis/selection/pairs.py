@@ -86,7 +86,7 @@ def _most_promising(
     if not fitted:
         return [], {}
     others = [t for t in trials if t.effect is not fitted[0].effect]
-    steps = best_steps([t.effect for t in others], fitted[0].fitted, data)
+    steps = best_steps([t.effect for t in others], fitted[0].fitted, data, data.healthy is not None)
     beside = {t.effect: s for t, s in zip(others, steps, strict=True) if s.gain > 0.0}
     helping = [t for t in sorted(others, key=lambda t: -_gain(beside, t)) if t.effect in beside]
     best, more = fitted[: PAIRED - PARTNERS], fitted[PAIRED - PARTNERS :]

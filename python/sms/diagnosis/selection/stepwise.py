@@ -15,7 +15,7 @@ cause is taken out again, and must be missed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -109,19 +109,28 @@ def _promising(
     """
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
-    steps = best_steps(effects, current, data)
+    # Records of the healthy machine tell its numbers so well that nothing is to be had from where they went since.
+    # Without them both are tried, where these numbers went farther than chance has it: they may have made up for an effect.
+    steps = best_steps(effects, current, data, declared=data.healthy is not None)
+    made_up = data.healthy is None and departs(current)
+    afar = best_steps(effects, current, data, declared=True) if made_up else []
     alike = scores.cosine > ALIKE
     by_slope = first_of_each([int(k) for k in np.argsort(-promise) if promise[k] > 0.0], alike)
-    chosen = dict.fromkeys(chosen_by_step(steps) + by_slope[:TRIED_BY_SLOPE])
+    from_afar = chosen_by_step(afar) if afar else []
+    chosen = dict.fromkeys(chosen_by_step(steps) + from_afar + by_slope[:TRIED_BY_SLOPE])
     chosen |= dict.fromkeys(np.flatnonzero(alike[by_slope[0]]).tolist() if by_slope else ())
 
+    def left(fitted: Fitted) -> float:
+        return logarithms(data.identify, fitted.fit.residual)
+
     def candidate(k: int) -> Fitted:
-        return without_sensitivities(
-            _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
-        )
+        found = _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
+        if k in from_afar:
+            found = min(found, _fitted_from(afar[k].params, effects[k], current, data), key=left)
+        return without_sensitivities(found)
 
     first = {k: candidate(k) for k in chosen}
-    best = min(first, key=lambda k: logarithms(data.identify, first[k].fit.residual))
+    best = min(first, key=lambda k: left(first[k]))
     rivals = [
         k
         for k, effect in enumerate(effects)
@@ -134,7 +143,7 @@ def _promising(
     first |= {k: candidate(k) for k in rivals if k not in first}
     return leaders_settled(
         first,
-        lambda f: logarithms(data.identify, f.fit.residual),
+        left,
         lambda one, other: bool(alike[one, other]),
         data,
     )
@@ -144,14 +153,8 @@ def _fitted(
     effect: Effect, current: Fitted, data: Data, step: Step, slope: float, room: Array
 ) -> Fitted:
     """The effect fitted beside all else that is free, from the better of its step and its linear estimate."""
-    hypothesis = extended(current.hypothesis, effect, data)
-    most_steps = CANDIDATE_STEPS * len(effect.parameters)
-    allowed = data.allowed(data.identify)
-    if allowed is not None and step.gain > 0.0:
-        slopes = current.slopes
-        return fit(
-            hypothesis, data.identify, step.params, most_steps, slopes, allowed, roughly=True
-        )
+    if data.healthy is not None and step.gain > 0.0:
+        return _fitted_from(step.params, effect, current, data)
     name = effect.parameters[0]
     step_by_slope = float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
     linear = moved(effect, current.params, step_by_slope, data.rig)
@@ -166,11 +169,29 @@ def _fitted(
             left = logarithms(data.identify, residual)
             if best is None or left < best[0]:
                 best = (left, start)
-    start = current.params if best is None else best[1]
     slopes = current.slopes
     if name not in slopes:
         slopes[name] = raw_columns(current, data.identify, [effect])[:, 0]
-    return fit(hypothesis, data.identify, start, most_steps, slopes, allowed, roughly=True)
+    return _fitted_from(current.params if best is None else best[1], effect, current, data, slopes)
+
+
+def _fitted_from(
+    start: _core.Params,
+    effect: Effect,
+    current: Fitted,
+    data: Data,
+    slopes: Mapping[str, Array] | None = None,
+) -> Fitted:
+    """The effect fitted beside all else that is free. slopes: sensitivities to begin with, the model's by default."""
+    return fit(
+        extended(current.hypothesis, effect, data),
+        data.identify,
+        start,
+        CANDIDATE_STEPS * len(effect.parameters),
+        current.slopes if slopes is None else slopes,
+        data.allowed(data.identify),
+        roughly=True,
+    )
 
 
 # ---- all rounds ------------------------------------------------------------------------------------
@@ -256,19 +277,22 @@ def _implausible(found: Sequence[list[Trial]], final: Fitted, data: Data) -> lis
     return None
 
 
-def without_unshifted(
+def without_untenable(
     outcome: Outcome, final: Fitted, baseline: Fitted, data: Data
 ) -> Outcome | None:
-    """Without the first cause whose value in the final model is within what is declared of it: it is none, whatever it
-    stood in for before the others came. None where each is beyond.
+    """Without the first cause whose value in the final model is within what is declared of it, or at the end of what is
+    plausible: it is none, whatever it stood in for before the others came. None where each can stand.
     """
     h = baseline.hypothesis
     for members in outcome.found:
         name = members[0].effect.parameters[0]
         declared = data.rig.declared(name).uncertainty
+        reason = implausible(members[0].effect, final, data)
         if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
+            reason = "within what is declared"
+        if reason:
             for trial in members:
-                trial.accepted, trial.reason = False, "beside other causes within what is declared"
+                trial.accepted, trial.reason = False, f"in the final model {reason}"
             kept = [m for m in outcome.found if m is not members]
             if not kept:
                 return Outcome(baseline, outcome.rounds, kept)
