@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from pathlib import Path
 
 from sms import _core
-from sms.errors import InputError, did_you_mean
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, is_of_leg
 
 
@@ -27,41 +25,9 @@ def load_params(path: str | os.PathLike[str]) -> _core.LegParams:
 
 def read_values(path: str | os.PathLike[str]) -> dict[str, float]:
     """What the [parameters] of such a file say, SI, by name; InputError as `load_params`."""
-    from sms.io.units import to_si  # noqa: PLC0415 (pint takes its time)
+    from sms.io.declarations import read_declarations  # noqa: PLC0415 (pint takes its time)
 
-    file = Path(path)
-    try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise InputError(
-            f"{file}: cannot be read ({problem.strerror}); name a parameter file"
-        ) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
-        raise InputError(f"{file}: not TOML ({problem}); correct that line") from None
-    table = content.get("parameters")
-    if not isinstance(table, dict) or not table:
-        raise InputError(
-            f"{file}: the table [parameters] is missing; sms calibrate geometry writes one"
-        )
-    values = {}
-    for name, said in table.items():
-        where = f"{file}, [parameters] {name}"
-        if name not in LEG_PARAMETERS:
-            near = did_you_mean(name, PARAMETERS, "docs/parameters.md lists all")
-            raise InputError(f"{where}: not a parameter; {near}")
-        text = said.get("value") if isinstance(said, dict) else said
-        if not isinstance(text, (int, float, str)) or isinstance(text, bool):
-            raise InputError(
-                f'{where}: no value; write {{ value = "1.2 {LEG_PARAMETERS[name].unit}" }}'
-            )
-        row = LEG_PARAMETERS[name]
-        value = to_si(text, row.unit, where)
-        if not row.lower <= value <= row.upper:
-            raise InputError(
-                f"{where}: {value:g} {row.unit} is outside {row.lower:g} to {row.upper:g}; correct it"
-            )
-        values[name] = value
-    return values
+    return {name: known.value for name, known in read_declarations(Path(path)).items()}
 
 
 def c_header(params: _core.LegParams, source: str) -> str:

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sms import _core
-from sms._core import Channel, Params
+from sms._core import Channel, LegParams, Params
 from sms.arrays import Array
 from sms.dynamics import mass_model_number
 from sms.kinematics import inverse_kinematics
@@ -199,7 +199,7 @@ def simulate_platform(
             N m, world axes, (n, 6), (6,) or one number.
         noise: of the measured extensions, m, (n, 3), (3,) or one number.
         masses: reading of the mass table, see `sms.dynamics`.
-        params: of the plant, or one for each actuator; the mechanism is made from the first.
+        params: of the plant, or one for each actuator (also as LegParams); the mechanism is made from the first.
 
     Raises: SimulationStoppedError, with what was computed; NotANumberError, OutOfRangeError,
         OutOfWorkspaceError for a pose that is none.
@@ -275,6 +275,8 @@ def extensions_of(
 
 
 def _one_each(params: Params | Sequence[Params] | None) -> list[Params]:
+    if isinstance(params, LegParams):
+        return params.legs
     if params is None or isinstance(params, Params):
         return [params if params is not None else Params()] * 3
     if len(params) != 3:

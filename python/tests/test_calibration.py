@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sms
+from plant_support import write_bench, write_platform
+from sms._core import LegParams
 from sms.calibration.fit import calibrate_poses, problem_of, unknowns
 from sms.calibration.proposal import END_MARGIN, propose
 from sms.calibration.result import geometry_file
@@ -15,9 +17,11 @@ from sms.calibration.rig import PosesRig, load_poses
 from sms.cli import app
 from sms.cli.simulate import settings_in_si
 from sms.errors import InputError
+from sms.io import Declaration, load_rig, write_extended_rig
 from sms.io.schema import ParameterTable
 from sms.parameter_files import c_header, load_params
 from sms.parameters import LEG_PARAMETERS
+from sms.scenario.load import load_scenario
 from typer.testing import CliRunner
 
 from validation.trials.calibrate import Machine, draw
@@ -139,9 +143,7 @@ def test_unknown_column(machine: Machine, tmp_path: Path) -> None:
         load_poses(rig)
 
 
-def test_a_simulation_takes_the_file_and_says_what_it_leaves_out(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_simulation_takes_the_file_each_leg_by_itself(tmp_path: Path) -> None:
     file = tmp_path / "geometry.toml"
     file.write_text(
         '[parameters]\nbase_joint_1_x = "1370 mm"\npayload_mass = "250 kg"\n'
@@ -149,10 +151,63 @@ def test_a_simulation_takes_the_file_and_says_what_it_leaves_out(
         encoding="utf-8",
     )
     found = settings_in_si(["payload_mass=280", str(file)])
-    assert found == {"base_joint_1_x": 1.37, "payload_mass": 280.0}
-    assert "sensor_gain_extension:2" in capsys.readouterr().err
-    with pytest.raises(InputError, match=r"none\.toml: cannot be read"):
+    assert found == {
+        "base_joint_1_x": 1.37,
+        "payload_mass": 280.0,
+        "sensor_gain_extension:2": 0.004,
+    }
+    with pytest.raises(InputError, match=r"none\.toml: there is no such parameter file"):
         settings_in_si([str(tmp_path / "none.toml")])
+    scenario = tmp_path / "scenario.toml"
+    for plant in ("platform", "bench"):
+        scenario.write_text(
+            f'[scenario]\nplant = "{plant}"\nduration = "1 s"\n[rig]\nfile = "geometry.toml"\n'
+            '[excitation]\nkind = "sine"\namplitude = "20 mm"\nfrequency = "0.5 Hz"\n',
+            encoding="utf-8",
+        )
+        if plant == "bench":
+            with pytest.raises(InputError, match="of one leg of a platform, and this is a bench"):
+                load_scenario(scenario)
+            continue
+        params = load_scenario(scenario).params
+        assert isinstance(params, LegParams)
+        gains = [leg["sensor_gain_extension"] for leg in params.legs]
+        assert gains == [0.0, 0.004, 0.0]
+
+
+def test_a_rig_file_takes_the_mechanism_as_calibrated(tmp_path: Path) -> None:
+    """Its values; and the smaller of two half widths, as poses know parameters together."""
+    rig = write_platform(tmp_path, 5, {}, 1.2)
+    (tmp_path / "geometry.toml").write_text(
+        '[parameters]\nbase_joint_1_x = { value = "1370 mm", uncertainty = "4 mm" }\npayload_mass = "250 kg"\n'
+        '"sensor_gain_extension:2" = { value = 0.004, uncertainty = 1e-5 }\n',
+        encoding="utf-8",
+    )
+    text = rig.read_text()
+    rig.write_text(text.replace("[rig]\n", '[rig]\ngeometry = "geometry.toml"\n', 1))
+    known = load_rig(rig)
+    assert known.declared("base_joint_1_x") == Declaration(1.37, 0.001)
+    assert known.declared("sensor_gain_extension:2") == Declaration(0.004, 0.0)
+    assert known.start().legs[1]["sensor_gain_extension"] == 0.004
+    assert known.geometry in known.files
+    # its [parameters] go before the file's, and an extended rig file elsewhere still finds it
+    extended = tmp_path / "report" / "extended.toml"
+    update = {"payload_mass": Declaration(260.0, 1.0)}
+    write_extended_rig(rig, extended, update, "extended")
+    again = load_rig(extended)
+    assert again.declared("payload_mass") == Declaration(260.0, 1.0)
+    assert again.declared("base_joint_1_x") == Declaration(1.37, 0.001)
+
+
+def test_geometry_of_a_rig_without_a_mechanism_is_refused(tmp_path: Path) -> None:
+    rig = write_bench(tmp_path, 6, {})
+    rig.write_text(rig.read_text().replace("[rig]\n", '[rig]\ngeometry = "geometry.toml"\n', 1))
+    with pytest.raises(InputError, match="a bench has no mechanism"):
+        load_rig(rig)
+    rig = write_platform(tmp_path, 6, {}, 1.2)
+    rig.write_text(rig.read_text().replace("[rig]\n", '[rig]\ngeometry = "geometri.toml"\n', 1))
+    with pytest.raises(InputError, match=r"\[rig\] geometry: there is no parameter file"):
+        load_rig(rig)
 
 
 def test_tables_take_the_parameters_as_words(tmp_path: Path) -> None:

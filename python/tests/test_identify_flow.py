@@ -20,7 +20,7 @@ from sms.identification.flow_problem import COMPONENT
 from sms.identification.flow_record import FlowRecord, look_at
 from sms.identification.flow_result import load_valve_map
 from sms.io import InputError, write_table
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from test_cli_diagnose import refused
 from test_cli_diagnose import sms as command
 

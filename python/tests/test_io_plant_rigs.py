@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from sms.diagnosis.pipeline import read_and_check
 from sms.io import InputError, load_rig, write_extended_rig, write_record
 from sms.io.check import check_record
+from sms.io.declarations import Declaration
 from sms.io.records import Record, load_record
-from sms.io.rig import Declaration
 from sms.io.signals import KINDS, SIGNAL_UNITS, of_legs, without_leg
 from sms.parameters import FLOW_MAP, FRICTION_MAP, LINEARITY, PARAMETERS
 

@@ -18,7 +18,7 @@ import numpy as np
 from sms.identification.flow import fit_record
 from sms.identification.flow_problem import COMPONENT, SYMBOL
 from sms.identification.flow_record import FlowRecord
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from sms.parameters import PARAMETERS
 
 from validation.twins.flow_test import (

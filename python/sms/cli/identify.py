@@ -16,7 +16,7 @@ from sms.cli.assets import Assets
 from sms.report.assets import Place
 
 if TYPE_CHECKING:
-    from sms.io.rig import Declaration
+    from sms.io.declarations import Declaration
 
 RigFile = Annotated[
     Path,

@@ -13,7 +13,7 @@ from sms.cli.assets import Assets
 from sms.cli.mechanism import AsJson, Settings, bad_input, files_first, is_file
 from sms.data import scenario_file
 from sms.errors import InputError
-from sms.parameters import PARAMETERS, is_of_leg
+from sms.parameters import LEG_PARAMETERS
 from sms.progress import INTERRUPTED_CODE, progress_bar
 from sms.report.assets import Place
 
@@ -103,29 +103,20 @@ def with_scale(scenario: Scenario, scale: float | None) -> Scenario:
 
 
 def settings_in_si(settings: list[str]) -> dict[str, float]:
-    """--set NAME=VALUE as numbers, a value may carry a unit; and --set FILE, before which the others go.
-
-    What a file says of one leg's sensors is left out, and said: a scenario's machine has three legs alike.
-    """
+    """--set NAME=VALUE as numbers, a value may carry a unit; and --set FILE, before which the others go."""
     from sms.parameter_files import read_values  # noqa: PLC0415
     from sms.scenario.load import parameter_value  # noqa: PLC0415
 
     values: dict[str, float] = {}
     for setting in files_first(settings):
         if is_file(setting):
-            said = read_values(setting)
-            values |= {name: value for name, value in said.items() if not is_of_leg(name)}
-            if of_legs := [name for name in said if is_of_leg(name)]:
-                print(
-                    f"sms: {setting}: of one leg, not simulated: {', '.join(of_legs)}",
-                    file=sys.stderr,
-                )
+            values |= read_values(setting)
             continue
         name, equals, value = (part.strip() for part in setting.partition("="))
         if not equals:
             raise InputError(f"--set {setting}: write NAME=VALUE, for instance payload_mass=280")
-        if name in PARAMETERS and value.replace(".", "", 1).lstrip("+-").isdigit():
-            value = f"{value} {PARAMETERS[name].unit}".removesuffix(" 1")
+        if name in LEG_PARAMETERS and value.replace(".", "", 1).lstrip("+-").isdigit():
+            value = f"{value} {LEG_PARAMETERS[name].unit}".removesuffix(" 1")
         values[name] = parameter_value(name, value, f"--set {setting}")
     return values
 

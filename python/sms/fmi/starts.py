@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sms.errors import InputError, did_you_mean
+from sms.errors import InputError
 from sms.fmi.binary import KINDS, variables_of
-from sms.io.rig import check_bounds
+from sms.io.declarations import check_rod, read_declarations
 from sms.io.schema import RigFile, parse_rig_text, read_rig_text
-from sms.io.units import to_si
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, common_parameter, is_of_leg
 
 _HAS_CONTROLLER = ("bench", "platform")
@@ -33,7 +32,8 @@ def starts_of_rig(kind: str, path: Path) -> Starts:
     file = parse_rig_text(read_rig_text(path), path)
     _check_kind(kind, file.rig.kind, path)
     names = {v.name: v for v in variables_of(kind)}
-    declared = _parameters(file, path)
+    declared = {name: known.value for name, known in read_declarations(path).items()}
+    check_rod(declared, path)
     values: dict[str, float] = {}
     left_out: dict[str, float] = {}
     for name, value in declared.items():
@@ -57,29 +57,6 @@ def _check_kind(kind: str, of_rig: str, path: Path) -> None:
     raise InputError(
         f"{path}, [rig] kind: this is the rig file of a {of_rig}, and no {kind} is made of it; {remedy}"
     )
-
-
-def _parameters(file: RigFile, path: Path) -> dict[str, float]:
-    """The values under [parameters], SI, by the names of the rig file."""
-    known = LEG_PARAMETERS if file.rig.kind == "platform" else PARAMETERS
-    values = {}
-    for name, table in file.parameters.items():
-        where = f"{path}, [parameters] {name}"
-        if name not in known:
-            near = did_you_mean(
-                common_parameter(name), PARAMETERS, "docs/parameters.md lists all of them"
-            )
-            raise InputError(f"{where}: there is no such parameter; {near}")
-        if table.value is not None:
-            values[name] = to_si(table.value, known[name].unit, where)
-            check_bounds(known[name], values[name], where)
-    rod, bore = (values.get(n, PARAMETERS[n].default) for n in ("rod_diameter", "bore_diameter"))
-    if rod >= bore:
-        raise InputError(
-            f"{path}, [parameters]: a rod of {1e3 * rod:g} mm does not go into a bore of {1e3 * bore:g} mm; check "
-            "rod_diameter, bore_diameter and their units"
-        )
-    return values
 
 
 def _variable_of(parameter: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from sms.identification.actuator import BenchResult
 from sms.identification.bench_fit import BenchFit, Told
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from sms.io.signals import SIGNAL_UNITS
 from sms.parameters import PARAMETERS
 from sms.units_display import format_estimate, format_interval, format_quantity, words

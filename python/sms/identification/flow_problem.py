@@ -15,7 +15,7 @@ from sms import _core
 from sms.arrays import Array
 from sms.identification.estimate import Free, with_start
 from sms.identification.flow_record import FlowRecord, Look, reading_noise, smooth_supply
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from sms.parameters import PARAMETERS
 
 COMPONENT = ("component_conductance", "component_critical_ratio", "component_subsonic_index")

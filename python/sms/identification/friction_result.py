@@ -7,7 +7,7 @@ from typing import Any
 
 from sms.identification.friction import FrictionResult
 from sms.identification.friction_fit import EQUATION, LawFit, Told
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from sms.parameters import PARAMETERS
 from sms.units_display import format_estimate, words
 

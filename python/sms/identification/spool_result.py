@@ -17,7 +17,7 @@ from sms.identification.spool import (
     SpoolResult,
     SpoolTold,
 )
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from sms.parameters import PARAMETERS
 from sms.units_display import format_estimate, words
 

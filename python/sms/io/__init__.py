@@ -6,8 +6,9 @@ array in SI units, `check_rig` and `check_record` say what is wrong with them.
 
 from sms.errors import InputError
 from sms.io.check import check_record, check_rig, raise_if_unusable
+from sms.io.declarations import Declaration
 from sms.io.records import Finding, Record, load_record
-from sms.io.rig import Declaration, RecordSource, Rig, load_rig
+from sms.io.rig import RecordSource, Rig, load_rig
 from sms.io.signal_sources import SignalSource
 from sms.io.write import (
     write_bytes_atomically,

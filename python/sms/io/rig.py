@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Literal
 
 from sms import _core
-from sms.errors import InputError, did_you_mean, nearest
+from sms.errors import InputError, did_you_mean
 from sms.io.data_files import beside, find_files
+from sms.io.declarations import Declaration, as_calibrated, check_rod, declaration, parameters_of
 from sms.io.schema import (
     ControlTable,
     DataTable,
@@ -39,7 +40,6 @@ from sms.io.units import interval_to_si, to_si
 from sms.parameters import (
     FLOW_MAP,
     FRICTION_MAP,
-    LEG_PARAMETERS,
     LINEARITY,
     PARAMETERS,
     SPECIMENS,
@@ -48,15 +48,6 @@ from sms.parameters import (
 )
 
 Role = Literal["identify", "validate", "test", "reference"]
-
-
-@dataclass(frozen=True)
-class Declaration:
-    """What is known of one parameter, in its SI unit."""
-
-    value: float
-    uncertainty: float  #: half width within which it may move unasked
-    fit: bool = False  #: unknown: to be fitted, `value` is the start
 
 
 @dataclass(frozen=True)
@@ -108,12 +99,15 @@ class Rig:
     control: ControlTable = field(default_factory=ControlTable)
     """With the controller that is simulated, if in any record."""
     effects: Path | None = None  #: a file with effects beside those of the catalogue
+    geometry: Path | None = (
+        None  #: the mechanism as calibrated, of which `parameters` has the values
+    )
     measured: date | datetime | None = None  #: the records, as the file says
 
     @property
     def files(self) -> tuple[Path, ...]:
         """Every file that is read with it: itself, its records, and what it names beside them."""
-        beside_it = (self.layout.dbc, self.effects, *(r.file for r in self.related))
+        beside_it = (self.layout.dbc, self.effects, self.geometry, *(r.file for r in self.related))
         return (self.path, *(r.file for r in self.records), *(f for f in beside_it if f))
 
     def declared(self, name: str) -> Declaration:
@@ -127,7 +121,7 @@ class Rig:
     @property
     def table(self) -> Mapping[str, Parameter]:
         """Bounds and units of every parameter that the model has."""
-        return _parameters_of(self.kind)
+        return parameters_of(self.kind)
 
     def start(self) -> _core.Params:
         """Every parameter as declared."""
@@ -157,6 +151,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
     control = next((c for c in controls if c.controller == "simulated"), file.control)
     if all(c.controller == "recorded" for c in controls):
         control = control.model_copy(update={"controller": "recorded"})
+    geometry, calibrated = as_calibrated(file.rig, path)
     speed_above = None
     if data.speed_above is not None:
         where = f"{path}, [data] speed_above"
@@ -177,9 +172,10 @@ def interpret(file: RigFile, path: Path) -> Rig:
         speed_above=speed_above,
         signals=sources_of(file, controls, path),
         parameters=_of_each_leg(
-            _half_widths(file, path)
+            calibrated
+            | _half_widths(file, path)
             | {
-                name: _declaration(name, table, f"{path}, [parameters]", _parameters_of(kind))
+                name: declaration(name, table, f"{path}, [parameters]", parameters_of(kind))
                 for name, table in file.parameters.items()
             },
             kind,
@@ -198,6 +194,7 @@ def interpret(file: RigFile, path: Path) -> Rig:
         if file.effects is None
         else beside(path, file.effects.file, "[effects] file", "file of effects"),
         measured=file.rig.measured,
+        geometry=geometry,
     )
     _check_machine(rig)
     return rig
@@ -205,12 +202,8 @@ def interpret(file: RigFile, path: Path) -> Rig:
 
 def _check_machine(rig: Rig) -> None:
     """InputError for values that are allowed each by itself, and together make no machine."""
-    bore, rod = (rig.declared(n).value for n in ("bore_diameter", "rod_diameter"))
-    if rod >= bore and (rig.kind in ("bench", "platform") or "rod_diameter" in rig.parameters):
-        raise InputError(
-            f"{rig.path}, [parameters]: a rod of {1e3 * rod:g} mm does not go into a bore of {1e3 * bore:g} mm; check "
-            "rod_diameter, bore_diameter and their units"
-        )
+    if rig.kind in ("bench", "platform") or "rod_diameter" in rig.parameters:
+        check_rod({n: rig.declared(n).value for n in ("bore_diameter", "rod_diameter")}, rig.path)
 
 
 def _control(table: RecordTable, rig: ControlTable, number: int, path: Path) -> ControlTable:
@@ -229,40 +222,6 @@ def _control(table: RecordTable, rig: ControlTable, number: int, path: Path) -> 
             'write loop = "closed", or controller = "recorded"'
         )
     return control
-
-
-def _parameters_of(kind: str) -> Mapping[str, Parameter]:
-    """A platform has parameters of one leg, too: "chamber_leakage_lower:2"."""
-    return LEG_PARAMETERS if kind == "platform" else PARAMETERS
-
-
-def _declaration(
-    name: str,
-    table: ParameterTable,
-    where: str,
-    known: Mapping[str, Parameter] = PARAMETERS,
-) -> Declaration:
-    where = f"{where} {name}"
-    if name not in known:
-        near = nearest(name, PARAMETERS)
-        remedy = f"did you mean '{near}'?" if near else "see the table of parameters (params.def)"
-        raise InputError(f"{where}: there is no such parameter; {remedy}")
-    parameter = known[name]
-    value, uncertainty = parameter.default, PARAMETERS.get(name, parameter).uncertainty
-    if table.value is not None:
-        value = to_si(table.value, parameter.unit, where)
-        check_bounds(parameter, value, where)
-    if table.uncertainty is not None:
-        uncertainty = interval_to_si(table.uncertainty, parameter.unit, f"{where}, uncertainty")
-        if uncertainty < 0.0:
-            raise InputError(f"{where}: an uncertainty is not negative; write its half width")
-        if uncertainty > (1.0 + 1e-9) * (parameter.upper - parameter.lower):
-            raise InputError(
-                f"{where}: an uncertainty of {table.uncertainty} is wider than the whole allowed range, "
-                f"{parameter.lower:g} to {parameter.upper:g}{unit_after(parameter)}; write fit = true where nothing is "
-                "known"
-            )
-    return Declaration(value, uncertainty, table.fit)
 
 
 def _half_widths(file: RigFile, path: Path) -> dict[str, Declaration]:
@@ -303,21 +262,6 @@ def _of_each_leg(declared: dict[str, Declaration], kind: str) -> dict[str, Decla
     return legs | declared
 
 
-def check_bounds(parameter: Parameter, value: float, where: str) -> None:
-    """InputError, with the allowed range, unless lower <= value <= upper (SI)."""
-    if not parameter.lower <= value <= parameter.upper:
-        unit = unit_after(parameter)
-        raise InputError(
-            f"{where}: {value:g}{unit} is outside the allowed range "
-            f"{parameter.lower:g} to {parameter.upper:g}{unit}; check the number and its unit"
-        )
-
-
-def unit_after(parameter: Parameter) -> str:
-    """The unit as it follows a number; nothing of a plain number."""
-    return "" if parameter.unit == "1" else f" {parameter.unit}"
-
-
 def _records(
     tables: list[RecordTable], controls: Sequence[ControlTable], data: DataTable, path: Path
 ) -> tuple[RecordSource, ...]:
@@ -349,7 +293,7 @@ def _records(
 def _conditions(table: RecordTable, where: str) -> dict[str, float]:
     """What was different in one run, in SI."""
     return {
-        name: _declaration(name, ParameterTable(value=value), where).value
+        name: declaration(name, ParameterTable(value=value), where).value
         for name, value in table.conditions.items()
     }
 

@@ -98,6 +98,8 @@ class RigTable(Table):
     notes: str = ""
     measured: Moment | None = None
     """When its records were measured; without it, when their files were changed last."""
+    geometry: str | None = None
+    """Of a platform: a parameter file, such as geometry.toml of `sms calibrate geometry`. [parameters] go before it."""
 
 
 class ModelTable(Table):
@@ -198,6 +200,15 @@ class EffectsTable(Table):
     file: str
 
 
+Parameters = dict[str, Annotated[ParameterTable, _short_form("value")]]
+
+
+class ParameterFile(Table):
+    """A file of parameters alone."""
+
+    parameters: Parameters
+
+
 class RigFile(Table):
     """The whole rig file."""
 
@@ -206,9 +217,7 @@ class RigFile(Table):
     control: ControlTable = ControlTable()
     data: DataTable = DataTable()
     signals: dict[str, Annotated[SignalTable, _short_form("column")]] | None = None
-    parameters: dict[str, Annotated[ParameterTable, _short_form("value")]] = Field(
-        default_factory=dict
-    )
+    parameters: Parameters = Field(default_factory=dict)
     records: list[RecordTable] = Field(min_length=1)
     related: list[RelatedTable] = Field(default_factory=list)
     effects: EffectsTable | None = None

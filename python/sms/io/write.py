@@ -21,7 +21,8 @@ from tomlkit.items import InlineTable
 
 from sms.errors import InputError, did_you_mean
 from sms.io.data_files import files_in
-from sms.io.rig import Declaration, check_bounds, interpret
+from sms.io.declarations import Declaration, check_bounds
+from sms.io.rig import interpret
 from sms.io.schema import parse_rig_text, read_rig_text
 from sms.io.signals import column_name
 from sms.io.units import from_si, interval_from_si, split_column_name, split_quantity
@@ -225,9 +226,10 @@ def _keep_data_reachable(document: Any, original_path: Path, out_path: Path) -> 
 
 
 def _keep_neighbours_reachable(document: Any, original_path: Path, out_path: Path) -> None:
-    """Point what names a file beside the original to it from the new place: related rigs, a DBC, effects."""
-    tables = [document.get("data", {}), document.get("effects", {}), *document.get("related", [])]
-    for table, key in zip(tables, ["dbc"] + ["file"] * (len(tables) - 1), strict=True):
+    """Point what names a file beside the original to it from the new place: geometry, DBC, effects, related rigs."""
+    named = [("rig", "geometry"), ("data", "dbc"), ("effects", "file")]
+    tables = [(document.get(table, {}), key) for table, key in named]
+    for table, key in tables + [(table, "file") for table in document.get("related", [])]:
         if key in table and not (file := Path(_plain(table[key])).expanduser()).is_absolute():
             table[key] = _from_new_place(file, original_path, out_path)
 

@@ -15,7 +15,7 @@ import can
 
 from sms import Params, _core
 from sms.errors import InputError, did_you_mean
-from sms.io.rig import check_bounds
+from sms.io.declarations import check_bounds
 from sms.io.units import to_si
 from sms.link.codec import HOST, sent_by
 from sms.link.faulty_bus import FrameFaults

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from sms.diagnosis.localisation.empirical_term import table_of
 from sms.diagnosis.result import Diagnosis, as_json
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from sms.io.write import write_extended_rig, write_text_atomically
 from sms.report.diagnosis import report_html
 from sms.report.page import write_page

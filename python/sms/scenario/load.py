@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sms._core import Params
+from sms._core import LegParams, Params
 from sms.errors import InputError
 from sms.io.data_files import search_places
-from sms.io.rig import check_bounds
+from sms.io.declarations import check_bounds, read_declarations
 from sms.io.schema import Table, TextOrNumber
 from sms.io.units import to_si
 from sms.kinematics import height_range
-from sms.parameters import PARAMETERS
+from sms.parameters import LEG_PARAMETERS, PARAMETERS, is_of_leg
 from sms.scenario.schema import (
     EXCITATIONS,
     DeckMotionTable,
@@ -93,9 +93,7 @@ def scenario_from(
     file = checked(ScenarioFile, tables, path)
     _check_one_motion(file, path)
     changed = {**_rig_parameters(file, path), **_parameters(file, path), **(settings or {})}
-    params = Params()
-    for name, value in changed.items():
-        params[name] = value
+    params = _machine(file.scenario.plant, changed, path)
     duration = file.scenario.duration
     low, high = TOLERANCES
     if not low <= file.model.tolerance <= high:
@@ -131,11 +129,23 @@ def scenario_from(
     )
 
 
+def _machine(plant: str, changed: Mapping[str, float], path: Path) -> Params:
+    """The published machine but for what is changed; of a platform each leg may have its own."""
+    params = LegParams() if plant == "platform" else Params()
+    for name, value in changed.items():
+        if is_of_leg(name) and plant != "platform":
+            raise InputError(
+                f"{path}: {name} is of one leg of a platform, and this is a {plant}; leave it out"
+            )
+        params[name] = value
+    return params
+
+
 def parameter_value(name: str, value: TextOrNumber, where: str) -> float:
     """A parameter's value in SI, within its bounds; InputError names key, value and range."""
-    if name not in PARAMETERS:
+    if name not in LEG_PARAMETERS:
         raise InputError(f"{where}: there is no such parameter; {known_parameter(name)}")
-    parameter = PARAMETERS[name]
+    parameter = LEG_PARAMETERS[name]
     number = to_si(value, parameter.unit, where)
     check_bounds(parameter, number, where)
     return number
@@ -227,16 +237,7 @@ def _rig_parameters(file: ScenarioFile, path: Path) -> dict[str, float]:
     rig = _rig_file(file, path)
     if rig is None:
         return {}
-    entries = read_toml(rig, "rig").get("parameters", {})
-    values = {
-        name: entry.get("value") if isinstance(entry, Mapping) else entry
-        for name, entry in entries.items()
-    }
-    return {
-        name: parameter_value(name, value, f"{rig}, [parameters] {name}")
-        for name, value in values.items()
-        if value is not None
-    }
+    return {name: known.value for name, known in read_declarations(rig).items()}
 
 
 def _start(file: ScenarioFile, params: Params, path: Path) -> tuple[float, float, float]:

@@ -16,7 +16,7 @@ from sms._core import Params
 from sms.arrays import Array
 from sms.identification.flow import fit_record
 from sms.identification.flow_record import FlowRecord
-from sms.io.rig import Declaration
+from sms.io.declarations import Declaration
 from sms.parameters import PARAMETERS
 from sms.validation.figures import FIGURES, Row
 

@@ -92,6 +92,8 @@ def _rig_text(rig: Rig, listed: Sequence[Mapping[str, str]], signals: Sequence[s
             del document[table]
     if rig.effects is not None:
         document["effects"] = {"file": str(rig.effects.resolve())}
+    if rig.geometry is not None:
+        document["rig"]["geometry"] = str(rig.geometry.resolve())
     document["signals"] = {s: _signal(rig, s) for s in signals}
     records = tomlkit.aot()
     for record in listed:

@@ -25,7 +25,8 @@ from sms.estimation.noise import sample_noise
 from sms.estimation.problem import WindowProblem
 from sms.estimation.run import Run
 from sms.estimation.windows import Runs
-from sms.io.rig import DataLayout, Declaration, Rig
+from sms.io.declarations import Declaration
+from sms.io.rig import DataLayout, Rig
 from sms.parameters import Parameter
 
 
