@@ -110,7 +110,7 @@ def _promising(
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     # Records of the healthy machine tell its numbers so well that nothing is to be had from where they went since.
-    # Without them both are tried, where these numbers went farther than chance has it: they may have made up for an effect.
+    # Without them both are tried, where these numbers went farther than chance has it: they may have made up for much.
     steps = best_steps(effects, current, data, declared=data.healthy is not None)
     made_up = data.healthy is None and departs(current)
     afar = best_steps(effects, current, data, declared=True) if made_up else []
