@@ -384,7 +384,7 @@ class Params:
     @property
     def bristle_stiffness(self) -> float:
         """
-        stiffness of the seals before they slide, sigma_0 [N/m]; assumed, a lip seal yields some 0.5 mm before it slides
+        stiffness of the seals before they slide, sigma_0; at its lower bound 38 N bend a lip by 4 mm, its own section [N/m]; assumed, a lip seal yields some 0.5 mm before it slides
         """
     @bristle_stiffness.setter
     def bristle_stiffness(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
