@@ -19,28 +19,35 @@ Listener = Callable[[str, Mapping[str, Any], str], str | None]
 
 
 class EventLog:
-    """Appends events to a file; a line is there whole or not at all."""
+    """Appends events to a file, made with the first; a line is there whole or not at all."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
-        except OSError as problem:
-            raise InputError(
-                f"{path}: cannot be written ({problem.strerror}); choose another --out"
-            ) from None
+        self._file: int | None = None
 
     def write(self, event: str, content: Mapping[str, Any]) -> str:
         """Append one event; the line."""
         now = datetime.now(UTC).isoformat(timespec="milliseconds")
         line = json_line("watch", {"event": event, "written": now, **content})
+        if self._file is None:
+            self._file = self._opened()
         os.write(self._file, line.encode())
         return line
 
     def close(self) -> None:
         """No more is written."""
-        os.close(self._file)
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
+
+    def _opened(self) -> int:
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            return os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+        except OSError as problem:
+            raise InputError(
+                f"{self.path}: cannot be written ({problem.strerror}); choose another --out"
+            ) from None
 
 
 class OnAlarm:
