@@ -213,6 +213,19 @@ def test_a_rig_file_s_parameters_are_taken_over(tmp_path: Path) -> None:
     assert asked.params.coulomb_force == 50.0 and asked.params.stroke == 0.38
 
 
+def test_what_one_leg_has_is_simulated_in_that_leg(tmp_path: Path) -> None:
+    """As the extended.toml of a platform says it: a leak of leg 2."""
+    (tmp_path / "extended.toml").write_text(
+        '[rig]\nkind = "platform"\n[parameters]\n"chamber_leakage_lower:2" = "1e-8 kg/(s Pa)"\n'
+        '[[records]]\nfile = "gone.csv"\nrole = "identify"\n'
+    )
+    asked = load_scenario(scenario(tmp_path, ROLL + DAMPED + '[rig]\nfile = "extended.toml"\n'))
+    sound = load_scenario(scenario(tmp_path, ROLL + DAMPED))
+    leaking, well = (run_scenario(s, command_of(s)).chamber_pressure_lower for s in (asked, sound))
+    fallen = np.sqrt(np.mean((leaking - well) ** 2, axis=0))
+    assert fallen[1] > 10.0 * max(fallen[0], fallen[2])
+
+
 def test_the_picture_is_the_mechanism(tmp_path: Path) -> None:
     asked = load_scenario(scenario(tmp_path))
     record = run_scenario(asked, command_of(asked))
