@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import tomllib
 from pathlib import Path
 
@@ -19,8 +21,10 @@ from sms.cli.simulate import settings_in_si
 from sms.errors import InputError
 from sms.io import Declaration, load_rig, write_extended_rig
 from sms.io.schema import ParameterTable
+from sms.kinematics import height_range
 from sms.parameter_files import c_header, load_params
 from sms.parameters import LEG_PARAMETERS
+from sms.report.calibration import calibration_html
 from sms.scenario.load import load_scenario
 from typer.testing import CliRunner
 
@@ -109,6 +113,21 @@ def test_geometry_file_is_what_load_params_reads(machine: Machine, tmp_path: Pat
     pose = sms.forward_kinematics([0.1, 0.2, 0.15], params=params)
     assert pose.roll != sms.forward_kinematics([0.1, 0.2, 0.15]).roll
     assert f"p->base_joint_1_x = {params['base_joint_1_x']!r};" in c_header(params, "geometry.toml")
+
+
+def test_the_page_has_every_pose_in_space(machine: Machine) -> None:
+    found = calibrate_poses(machine.rig)
+    data = re.search(r'id="plot-data"[^>]*>(.*?)</script>', calibration_html(found, []), re.S)
+    assert data is not None
+    space, plane = json.loads(data[1])["plane"]
+    assert space["titles"] == ["roll [deg]", "pitch [deg]", "height [m]"]
+    poses, *arrows = space["traces"]
+    low, high = height_range(found.params)
+    assert len(poses["z"]) == len(machine.rig.fitted.pose)
+    assert all(low - 0.05 < z < high + 0.05 for z in poses["z"])
+    assert [t["name"] for t in arrows] == ["before", "before", "after", "after"]
+    assert len(arrows[0]["x"]) == len(arrows[0]["z"]) == 3 * len(poses["z"])
+    assert plane["panels"]
 
 
 def test_command(machine: Machine, tmp_path: Path) -> None:

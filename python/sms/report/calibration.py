@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from sms.arrays import Array
-from sms.calibration.fit import COVERAGE, Calibrated, Found
+from sms.calibration.fit import COVERAGE, Calibrated, Found, problem_of
 from sms.report.markup import esc, section, table
-from sms.report.panels import figure, panel, panels_page, trace, view
+from sms.report.panels import Colour, figure, panel, panels_page, space_view, trace, view
 
 _ENLARGED = 10.0
-"""By which factor errors are drawn in the plane of roll and pitch."""
+"""By which factor errors of attitude are drawn."""
+_HEIGHT = 2
+"""Column of a pose."""
 
 
 def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
@@ -22,7 +26,7 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
         _strokes(measured, e) for e in (calibrated.errors_before, calibrated.errors_after)
     )
     plane = view(
-        "", "roll [deg]",
+        "from above", "roll [deg]",
         [panel("pitch [deg]", [
             trace(np.degrees(measured[:, 0]), np.degrees(measured[:, 1]), "poses", "measured", "markers"),
             trace(before[0], before[1], "before", "baseline"),
@@ -55,8 +59,10 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
         + figure(
             "plane",
             "The poses",
-            [plane],
-            f"Strokes: errors of attitude, {_ENLARGED:g} times enlarged.",
+            [_space(calibrated), plane],
+            f"Arrows: measured less predicted attitude, {_ENLARGED:g} times enlarged, before and after. The height "
+            "is the calibrated mechanism's.",
+            "tall",
         )
         + figure(
             "errors", "Measured less predicted", [errors], "Of the poses that were fitted.", "low"
@@ -64,7 +70,32 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
         + section("parameters", "Parameters", values)
         + section("combinations", "What the poses tell and what not", combined)
     )
-    return panels_page(f"Calibration: {rig.title}", body, {"plane": [plane], "errors": [errors]})
+    return panels_page(
+        f"Calibration: {rig.title}",
+        body,
+        {"plane": [_space(calibrated), plane], "errors": [errors]},
+    )
+
+
+def _space(calibrated: Calibrated) -> dict[str, Any]:
+    """The poses over roll, pitch and height, each with its errors as arrows."""
+    rig = calibrated.rig
+    height = problem_of(rig.fitted, rig, calibrated.nominal).predict(calibrated.params)[:, _HEIGHT]
+    roll, pitch = np.degrees(rig.fitted.pose[:, :2]).T
+    traces = [trace(roll, pitch, "poses", "measured", "markers", z=height)]
+    both: tuple[tuple[str, Colour, Array], ...] = (
+        ("before", "baseline", calibrated.errors_before),
+        ("after", "extended", calibrated.errors_after),
+    )
+    for name, colour, errors in both:
+        x, y = _strokes(rig.fitted.pose, errors)
+        traces += [
+            trace(x, y, name, colour, z=np.repeat(height, 3)),
+            trace(
+                x[1::3], y[1::3], name, colour, "markers", z=height, symbol="diamond", quiet=True
+            ),
+        ]
+    return space_view("in space", ("roll [deg]", "pitch [deg]", "height [m]"), traces)
 
 
 def _strokes(at: Array, error: Array) -> tuple[Array, Array]:

@@ -24,6 +24,12 @@
       texttemplate: "%{text}", hovertemplate: "%{y} with %{x}: %{z:.3f}<extra></extra>", colorbar: { thickness: 10 } }];
   }
 
+  function space(trace) {
+    const { x, y, name, mode, showlegend, opacity, line: stroke, marker } = line(trace, 0);
+    return { type: "scatter3d", x, y, z: trace.z, name, mode, showlegend, opacity,
+      line: { color: stroke.color, width: 4 }, marker: { color: marker.color, size: trace.size || 3, symbol: marker.symbol } };
+  }
+
   // Whether every name of the legend stands for dots, which are too small there as they are drawn.
   function dots(view) {
     const named = (view.panels || []).flatMap((panel) => panel.traces.filter((trace) => trace.name));
@@ -33,6 +39,13 @@
   function layout(place, view) {
     const out = look(place, { margin: { l: 64, r: 12, t: 12, b: 44 },
       legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, itemsizing: dots(view) ? "constant" : "trace" } });
+    if (view.titles) {
+      const side = (title) => ({ title: { text: title }, color: colour("quiet"), gridcolor: colour("line"),
+        backgroundcolor: "rgba(0,0,0,0)" });
+      const [xaxis, yaxis, zaxis] = view.titles.map(side);
+      return Object.assign(out, { margin: { l: 0, r: 0, t: 0, b: 0 },
+        scene: { xaxis, yaxis, zaxis, aspectmode: "cube", camera: { eye: { x: 1.6, y: -1.6, z: 0.9 } } } });
+    }
     if (view.names) {
       return Object.assign(out, { margin: { l: 64, r: 12, t: 36, b: 44 }, xaxis: axis("", { tickangle: -30 }), yaxis: axis("", { autorange: "reversed" }) });
     }
@@ -55,7 +68,7 @@
 
   function draw(id, number) {
     const view = data[id][number];
-    const traces = view.names ? map(view) : view.panels.flatMap((panel, i) => panel.traces.map((t) => line(t, i)));
+    const traces = view.names ? map(view) : view.titles ? view.traces.map(space) : view.panels.flatMap((panel, i) => panel.traces.map((t) => line(t, i)));
     Plotly.react(`${id}-plot`, traces, layout(document.getElementById(`${id}-plot`), view), config);
   }
 

@@ -33,8 +33,8 @@ def trace(
     mode: Literal["lines", "markers", "lines+markers"] = "lines",
     **more: Any,
 ) -> dict[str, Any]:
-    """One curve. `more`: dash, size, symbol, quiet, and error (above) with error_below, (n,)."""
-    arrays = {k: numbers(v) for k, v in more.items() if k in ("error", "error_below")}
+    """One curve. `more`: dash, size, symbol, quiet, and error (above) with error_below, (n,); z, (n,), in space."""
+    arrays = {k: numbers(v) for k, v in more.items() if k in ("error", "error_below", "z")}
     return {"x": numbers(x), "y": numbers(y), "name": name, "colour": colour, "mode": mode} | (
         more | arrays
     )
@@ -50,6 +50,13 @@ def view(
 ) -> dict[str, Any]:
     """What is drawn at a time. `more`: x_log; x_names, what stands at 1, 2, ... of the axis."""
     return {"label": label, "x_title": x_title, "panels": list(panels)} | more
+
+
+def space_view(
+    label: str, titles: tuple[str, str, str], traces: Sequence[Mapping[str, Any]]
+) -> dict[str, Any]:
+    """Curves in space, which can be turned; titles of x, y and z."""
+    return {"label": label, "titles": list(titles), "traces": list(traces)}
 
 
 def correlation_view(label: str, names: Sequence[str], correlation: NDArray[Any]) -> dict[str, Any]:
