@@ -3,6 +3,7 @@
 from sms import _dispatch  # noqa: F401  # first: decides which copy of the core sms._core is
 from sms._core import (
     Channel,
+    LegParams,
     NotANumberError,
     NotConvergedError,
     OutOfRangeError,
@@ -56,6 +57,7 @@ __all__ = [
     "Energies",
     "ForwardKinematics",
     "InverseKinematics",
+    "LegParams",
     "LinearModel",
     "Mechanism",
     "Modes",

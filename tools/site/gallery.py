@@ -34,6 +34,7 @@ EXAMPLES = (
     Example("bench", "Simulate the bench", c="05_plant.c", also="simulation"),
     Example("loop", "Close the loop", c="07_controller.c", also="simulation"),
     Example("valve", "Identify a valve", c="06_pneumatics.c", also="identification"),
+    Example("calibrate", "Calibrate a platform", also="calibration"),
     Example("diagnosis", "Diagnose", also="diagnosis"),
     Example("two_tanks", "A plant of one's own", ("leak",), also="own_model"),
     Example("fmu", "A loop of FMUs", also="fmi"),
