@@ -73,13 +73,17 @@ from sms.estimation.least_squares import changed
 
 
 def try_effects(
-    current: Fitted, data: Data, effects: Sequence[Effect], rng: np.random.Generator
+    current: Fitted,
+    data: Data,
+    effects: Sequence[Effect],
+    rng: np.random.Generator,
+    afar: bool = False,
 ) -> tuple[Fitted, list[Trial]]:
     """Every effect on top of the model as it stands; those that promise most are fitted. The model comes back with the
-    initial states that the trials have found.
+    initial states that the trials have found. afar: finite steps begin at what is declared.
     """
     scores = score_effects(current, data, effects, rng)
-    first = _promising(current, data, effects, scores)
+    first = _promising(current, data, effects, scores, afar)
     current = looked_at_again(current, data)
     before = refitted(current, data).fit.residual ** 2
     trials = []
@@ -102,7 +106,7 @@ def try_effects(
 
 
 def _promising(
-    current: Fitted, data: Data, effects: Sequence[Effect], scores: ScoreTests
+    current: Fitted, data: Data, effects: Sequence[Effect], scores: ScoreTests, afar: bool
 ) -> dict[int, Fitted]:
     """By index the effects that are fitted: the best by finite steps and by slope, each in a direction of its own, then
     what is alike to the best of them or acts in its equation.
@@ -110,14 +114,11 @@ def _promising(
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     # Records of the healthy machine tell its numbers so well that nothing is to be had from where they went since.
-    # Without them both are tried, where these numbers went farther than chance has it: they may have made up for much.
-    steps = best_steps(effects, current, data, declared=data.healthy is not None)
-    made_up = data.healthy is None and departs(current)
-    afar = best_steps(effects, current, data, declared=True) if made_up else []
+    steps = best_steps(effects, current, data, declared=afar or data.healthy is not None)
     alike = scores.cosine > ALIKE
     by_slope = first_of_each([int(k) for k in np.argsort(-promise) if promise[k] > 0.0], alike)
-    from_afar = chosen_by_step(afar) if afar else []
-    chosen = dict.fromkeys(chosen_by_step(steps) + from_afar + by_slope[:TRIED_BY_SLOPE])
+    by_step = chosen_by_step(steps)
+    chosen = dict.fromkeys(by_step + by_slope[:TRIED_BY_SLOPE])
     chosen |= dict.fromkeys(np.flatnonzero(alike[by_slope[0]]).tolist() if by_slope else ())
 
     def left(fitted: Fitted) -> float:
@@ -125,8 +126,8 @@ def _promising(
 
     def candidate(k: int) -> Fitted:
         found = _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
-        if k in from_afar:
-            found = min(found, _fitted_from(afar[k].params, effects[k], current, data), key=left)
+        if afar and k in by_step:
+            found = min(found, _fitted_from(steps[k].params, effects[k], current, data), key=left)
         return without_sensitivities(found)
 
     first = {k: candidate(k) for k in chosen}
@@ -224,6 +225,11 @@ def stepwise_selection(
         needed = NEARLY_ALL if small(here, least) else LEAST_SHARE
         judge(trials, current, data, original, needed, rng)
         members = ambiguity_group(trials, current, data)
+        if not members and data.healthy is None and departs(current):
+            # What is known went farther than chance has it: it may have made up for what is looked for.
+            current, trials = try_effects(current, data, remaining, rng, afar=True)
+            judge(trials, current, data, original, needed, rng)
+            members = ambiguity_group(trials, current, data)
         together = (
             [] if members or number > 1 else try_pairs(trials, current, data, original, needed, rng)
         )
