@@ -110,7 +110,7 @@ def test_pairs_are_filled_up_with_what_was_not_fitted(monkeypatch: pytest.Monkey
         trial = Trial(cast(Any, name), cast(Any, fitted), p_value, np.zeros(1))
         trial.lower = lower
         trials.append(trial)
-    tried, _ = pairs._most_promising(trials, current, cast(Any, None))
+    tried, _ = pairs._most_promising(trials, current, cast(Any, SimpleNamespace(healthy=None)))
     assert [t.effect for t in tried] == ["d", "b", "c", "a"]
 
 
@@ -155,11 +155,17 @@ def test_of_nothing_a_cause_takes_no_share() -> None:
     assert not refused(identify=0.0, validate=0.1)  # of so little neither says more than the other
 
 
-def test_what_ends_up_within_what_is_declared_of_it_is_no_cause(
+def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(stepwise, "_with_these", lambda found, *rest: [m[0] for m in found])
     monkeypatch.setattr(stepwise, "_without_one", lambda *rest: None)
+    at_its_end: set[str] = set()
+
+    def implausible(effect: Any, final: Any, data: Any) -> str:
+        return "fits best at its end" if effect.parameters[0] in at_its_end else ""
+
+    monkeypatch.setattr(stepwise, "implausible", implausible)
 
     def found(name: str) -> list[Trial]:
         made = Trial(
@@ -178,7 +184,7 @@ def test_what_ends_up_within_what_is_declared_of_it_is_no_cause(
 
     def without(value: float) -> Outcome | None:
         final = cast(Any, SimpleNamespace(params={"mass": value, "leak": 1e-9}))
-        return stepwise.without_unshifted(outcome, final, baseline, data)
+        return stepwise.without_untenable(outcome, final, baseline, data)
 
     assert without(3.9) is None
     fewer = without(3.7)
@@ -186,6 +192,11 @@ def test_what_ends_up_within_what_is_declared_of_it_is_no_cause(
     assert fewer.found == [leak]
     assert not mass[0].accepted
     assert leak[0].accepted
+    at_its_end.add("leak")
+    fewer = without(3.9)
+    assert fewer is not None
+    assert fewer.found == [mass]
+    assert leak[0].reason == "in the final model fits best at its end"
 
 
 def test_who_leaves_least_is_carried_on_and_what_is_alike_to_it(
