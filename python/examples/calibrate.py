@@ -56,9 +56,9 @@ def attitude(machine: sms.LegParams, read: np.ndarray) -> np.ndarray:
 
 def extensions(count: int) -> np.ndarray:
     """Of poses that are drawn evenly over tilt and height, within the stroke: (count, 3) m."""
-    tilt = random.uniform(-0.12, 0.12, (2, 20 * count))
+    roll, pitch = random.uniform(-0.12, 0.12, (2, 20 * count))
     height = 0.5 + random.uniform(-0.12, 0.12, 20 * count)
-    found = sms.inverse_kinematics(*tilt, height, params=drawing).extension
+    found = sms.inverse_kinematics(roll, pitch, height, params=drawing).extension
     inside = np.all((found > 0.02) & (found < drawing.stroke - 0.02), axis=1)
     return found[inside][:count]
 
