@@ -194,6 +194,30 @@ def test_a_simulation_takes_the_file_each_leg_by_itself(tmp_path: Path) -> None:
         assert gains == [0.0, 0.004, 0.0]
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            '[parameters]\nstroke = { uncertainty = "1 mm" }\n',
+            'stroke: no value; write { value = "1.2 m" }',
+        ),
+        ("[parameters]\n", r"the table [parameters] is missing"),
+        ('[parameters]\nstrok = "1 m"\n', "did you mean 'stroke'"),
+        ('[parameters]\nstroke = "40 kg"\n', "stroke"),
+        ('[parameters]\nstroke = "40 m"\n', "outside the allowed range"),
+    ],
+)
+def test_a_parameter_file_that_cannot_be_used_is_one_sentence(
+    text: str, said: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "geometry.toml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=re.escape(said)) as caught:
+        load_params(file)
+    assert str(file) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 def test_a_rig_file_takes_the_mechanism_as_calibrated(tmp_path: Path) -> None:
     """Its values; and the smaller of two half widths, as poses know parameters together."""
     rig = write_platform(tmp_path, 5, {}, 1.2)

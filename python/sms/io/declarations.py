@@ -38,10 +38,10 @@ def read_declarations(path: Path) -> dict[str, Declaration]:
     tables = parse_toml(read_text(path, "parameter file", "[parameters]"), path)
     rig = tables.get("rig")
     if not isinstance(rig, Mapping):
-        return _of_tables(tables, path)
+        return _of_parameter_file(tables, path)
     geometry = rig.get("geometry")
-    known = _calibrated(geometry, path) if isinstance(geometry, str) else {}
-    return known | _of_tables({"parameters": {}} | tables, path)
+    known = _calibrated(_named(geometry, path)) if isinstance(geometry, str) else {}
+    return known | _of_tables(tables, path)
 
 
 def as_calibrated(rig: RigTable, path: Path) -> tuple[Path | None, dict[str, Declaration]]:
@@ -54,27 +54,44 @@ def as_calibrated(rig: RigTable, path: Path) -> tuple[Path | None, dict[str, Dec
         return None, {}
     if rig.kind != "platform":
         raise InputError(f"{path}, [rig] geometry: a {rig.kind} has no mechanism; leave it out")
-    file = beside(path, rig.geometry, "[rig] geometry", "parameter file")
-    return file, _calibrated(rig.geometry, path)
+    file = _named(rig.geometry, path)
+    return file, _calibrated(file)
 
 
-def _calibrated(geometry: str, path: Path) -> dict[str, Declaration]:
-    """What the parameter file says that the rig file `path` names as its geometry."""
-    file = beside(path, geometry, "[rig] geometry", "parameter file")
-    found = _of_tables(parse_toml(read_text(file, "parameter file", "[parameters]"), file), file)
-    half_widths = {
-        name: min(known.uncertainty, LEG_PARAMETERS[name].uncertainty)
-        for name, known in found.items()
+def _named(geometry: str, path: Path) -> Path:
+    """The file that the rig file `path` names as its geometry."""
+    return beside(path, geometry, "[rig] geometry", "parameter file")
+
+
+def _calibrated(file: Path) -> dict[str, Declaration]:
+    """Of a parameter file the values, and of its half widths those that are narrower than the default ones."""
+    tables = parse_toml(read_text(file, "parameter file", "[parameters]"), file)
+    return {
+        name: Declaration(known.value, min(known.uncertainty, LEG_PARAMETERS[name].uncertainty))
+        for name, known in _of_parameter_file(tables, file).items()
     }
-    return {name: Declaration(found[name].value, half_widths[name]) for name in found}
 
 
-def _of_tables(tables: Mapping[str, Any], path: Path) -> dict[str, Declaration]:
-    if "parameters" not in tables:
+def _of_parameter_file(tables: Mapping[str, Any], path: Path) -> dict[str, Declaration]:
+    """As `_of_tables`; InputError where there is nothing, or an entry has no value."""
+    entries = tables.get("parameters")
+    if not entries:
         raise InputError(
             f"{path}: the table [parameters] is missing; sms calibrate geometry writes one"
         )
-    file = checked(ParameterFile, {"parameters": tables["parameters"]}, path)
+    declared = _of_tables(tables, path)
+    for name, entry in entries.items():
+        if isinstance(entry, Mapping) and "value" not in entry:
+            unit = unit_after(LEG_PARAMETERS[name])
+            raise InputError(
+                f'{path}, [parameters] {name}: no value; write {{ value = "1.2{unit}" }}'
+            )
+    return declared
+
+
+def _of_tables(tables: Mapping[str, Any], path: Path) -> dict[str, Declaration]:
+    """The entries of [parameters], if there are any."""
+    file = checked(ParameterFile, {"parameters": tables.get("parameters", {})}, path)
     where = f"{path}, [parameters]"
     return {
         name: declaration(name, table, where, LEG_PARAMETERS)
@@ -88,6 +105,7 @@ def declaration(
     where: str,
     known: Mapping[str, Parameter] = PARAMETERS,
 ) -> Declaration:
+    """One entry in SI units, its default where it says nothing; InputError begins with `where`."""
     where = f"{where} {name}"
     if name not in known:
         near = nearest(name, PARAMETERS)

@@ -99,9 +99,7 @@ class Rig:
     control: ControlTable = field(default_factory=ControlTable)
     """With the controller that is simulated, if in any record."""
     effects: Path | None = None  #: a file with effects beside those of the catalogue
-    geometry: Path | None = (
-        None  #: the mechanism as calibrated, of which `parameters` has the values
-    )
+    geometry: Path | None = None  #: the mechanism as calibrated; `parameters` has its values
     measured: date | datetime | None = None  #: the records, as the file says
 
     @property

@@ -25,6 +25,7 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
     before, after = (
         _strokes(measured, e) for e in (calibrated.errors_before, calibrated.errors_after)
     )
+    space = _space(calibrated)
     plane = view(
         "from above", "roll [deg]",
         [panel("pitch [deg]", [
@@ -59,7 +60,7 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
         + figure(
             "plane",
             "The poses",
-            [_space(calibrated), plane],
+            [space, plane],
             f"Arrows: measured less predicted attitude, {_ENLARGED:g} times enlarged, before and after. The height "
             "is the calibrated mechanism's.",
             "tall",
@@ -70,11 +71,8 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
         + section("parameters", "Parameters", values)
         + section("combinations", "What the poses tell and what not", combined)
     )
-    return panels_page(
-        f"Calibration: {rig.title}",
-        body,
-        {"plane": [_space(calibrated), plane], "errors": [errors]},
-    )
+    figures = {"plane": [space, plane], "errors": [errors]}
+    return panels_page(f"Calibration: {rig.title}", body, figures)
 
 
 def _space(calibrated: Calibrated) -> dict[str, Any]:

@@ -27,7 +27,8 @@
   function space(trace) {
     const { x, y, name, mode, showlegend, opacity, line: stroke, marker } = line(trace, 0);
     return { type: "scatter3d", x, y, z: trace.z, name, mode, showlegend, opacity,
-      line: { color: stroke.color, width: 4 }, marker: { color: marker.color, size: trace.size || 3, symbol: marker.symbol } };
+      line: { color: stroke.color, width: 4 },
+      marker: { color: marker.color, size: trace.size || 3, symbol: marker.symbol } };
   }
 
   // Whether every name of the legend stands for dots, which are too small there as they are drawn.
@@ -68,7 +69,8 @@
 
   function draw(id, number) {
     const view = data[id][number];
-    const traces = view.names ? map(view) : view.titles ? view.traces.map(space) : view.panels.flatMap((panel, i) => panel.traces.map((t) => line(t, i)));
+    const traces = view.names ? map(view) : view.titles ? view.traces.map(space)
+      : view.panels.flatMap((panel, i) => panel.traces.map((t) => line(t, i)));
     Plotly.react(`${id}-plot`, traces, layout(document.getElementById(`${id}-plot`), view), config);
   }
 
