@@ -1,9 +1,10 @@
 """A platform that is not quite as drawn: measured in 30 poses and calibrated.
 
-Joints, the links' lengths, and gain and zero of each sensor are off by what nobody knows. An inclinometer
-reads roll and pitch, position sensors the extensions; from these `sms calibrate geometry` works out the
-machine as built. In poses that were not measured its attitude is held against that of the hidden machine,
-and so is the drawing's.
+Joints, the links' lengths, and gain and zero of each sensor are off by what
+nobody knows. An inclinometer reads roll and pitch, position sensors the
+extensions; from these `sms calibrate geometry` works out the machine as built. In
+poses that were not measured its attitude is held against that of the hidden
+machine, and so is the drawing's.
 """
 
 import argparse
@@ -47,7 +48,7 @@ def of_sensors(machine: sms.LegParams, what: str) -> np.ndarray:
 
 
 def attitude(machine: sms.LegParams, read: np.ndarray) -> np.ndarray:
-    """What an exact inclinometer reads in degrees, (n, 2), where the position sensors read (n, 3) m."""
+    """What an exact inclinometer reads, (n, 2) deg, of extensions read, (n, 3) m."""
     extension = (read - of_sensors(machine, "offset")) / (1.0 + of_sensors(machine, "gain"))
     pose = sms.forward_kinematics(extension, params=machine)
     zero = machine["sensor_offset_roll"], machine["sensor_offset_pitch"]
@@ -55,7 +56,7 @@ def attitude(machine: sms.LegParams, read: np.ndarray) -> np.ndarray:
 
 
 def extensions(count: int) -> np.ndarray:
-    """Of poses that are drawn evenly over tilt and height, within the stroke: (count, 3) m."""
+    """Of poses drawn evenly over tilt and height, within the stroke: (count, 3) m."""
     roll, pitch = random.uniform(-0.12, 0.12, (2, 20 * count))
     height = 0.5 + random.uniform(-0.12, 0.12, 20 * count)
     found = sms.inverse_kinematics(roll, pitch, height, params=drawing).extension
@@ -83,10 +84,8 @@ off = {
     "calibrated": attitude(calibrated, unseen) - truth,
 }
 for machine, error in off.items():
-    worst = np.abs(error).max()
-    print(
-        f"{machine}: {np.sqrt(np.mean(error**2)):.4f} deg off in 200 unseen poses, {worst:.3f} deg at most"
-    )
+    usual, worst = np.sqrt(np.mean(error**2)), np.abs(error).max()
+    print(f"{machine}: {usual:.4f} deg off in 200 unseen poses, {worst:.3f} at most")
 
 if picture:
     import matplotlib.pyplot as plt
@@ -95,6 +94,7 @@ if picture:
     for machine, error in off.items():
         axes.quiver(*truth.T, *error.T, angles="xy", scale_units="xy", scale=0.1, width=0.003,
                     color={"drawing": "C1", "calibrated": "C0"}[machine], label=machine)  # fmt: skip
+    axes.margins(0.15)
     axes.set(
         xlabel="roll [deg]", ylabel="pitch [deg]", title="errors of attitude, 10 times enlarged"
     )
