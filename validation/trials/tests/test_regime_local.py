@@ -24,13 +24,18 @@ def equation(rng: np.random.Generator, missing: float) -> Equation:
 
 
 def test_a_law_that_is_missing_in_one_region_is_found_there() -> None:
+    """In the median of its draws: the regions' edges are quartiles of samples, and a false discovery is one of its lots."""
     rng = draw("a law in one region")
-    asked = equation(rng, missing=1.5)
-    (found,) = regime_local(asked)
-    inputs = asked.validate[0].inputs
-    inside, far = inputs[:, 0] > 1.1, inputs[:, 0] < 0.9
-    assert np.sqrt(np.mean((found[inside] - 1.5 * inputs[inside, 1]) ** 2)) < 0.3
-    assert np.mean(found[far] == 0.0) > 0.7
+    errors, none_far = [], []
+    for _ in range(20):
+        asked = equation(rng, missing=1.5)
+        (found,) = regime_local(asked)
+        inputs = asked.validate[0].inputs
+        inside, far = inputs[:, 0] > 1.1, inputs[:, 0] < 0.9
+        errors.append(np.sqrt(np.mean((found[inside] - 1.5 * inputs[inside, 1]) ** 2)))
+        none_far.append(np.mean(found[far] == 0.0))
+    assert np.median(errors) < NOISE / 2.0
+    assert np.median(none_far) > 0.9
 
 
 def test_noise_alone_has_no_law() -> None:
