@@ -54,7 +54,7 @@ void begin(Application& app, const frame::ParameterBegin& s, sms_hardware_output
 void write(Application& app, const frame::ParameterWrite& s, sms_hardware_outputs& out) {
   const int index = int(s.parameter_index);
   const ParameterResult result = parameters_write(app.parameters, write_access(app), index, s.parameter_value, app.now);
-  const float* stored = app.parameters.open ? parameter(app.parameters.staged, index) : nullptr;
+  const float* stored = app.parameters.open ? stored_parameter(app.parameters, index) : nullptr;
   const float value = stored != nullptr ? *stored : 0.0f;
   put_frame(out, confirmation(Operation::write, result, s.alive, s.session, s.parameter_index, value));
 }

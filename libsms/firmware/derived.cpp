@@ -69,11 +69,12 @@ WriteAccess write_access(const Application& app) {
 ParameterResult commit_parameters(Application& app, Word count) {
   ParameterStore& store = app.parameters;
   ParameterResult result = parameters_ready(store, write_access(app), count);
-  if (result == ParameterResult::ok && derive(store.staged, app.derived) != SMS_OK) {
-    result = ParameterResult::impossible_machine;
-  }
   if (result == ParameterResult::ok) {
-    store.active = store.staged;
+    exchange_staged(store);
+    if (derive(store.active, app.derived) != SMS_OK) {
+      exchange_staged(store);
+      result = ParameterResult::impossible_machine;
+    }
   }
   note(app, result == ParameterResult::ok ? EventKind::parameters_applied : EventKind::parameters_discarded,
        Word(result));

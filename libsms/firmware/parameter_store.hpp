@@ -1,5 +1,7 @@
-// Parameters in two phases: a transaction writes to a copy, and the whole copy takes effect at once, or nothing of it.
+// Parameters in two phases: the writes of a transaction wait in a list, and take effect together at once, or none does.
 #pragma once
+
+#include <utility>
 
 #include "settings.hpp"
 #include "sms/scalar.hpp"
@@ -10,15 +12,45 @@ namespace firmware {
 // Who may write what now.
 enum class WriteAccess { none, live, all };
 
+enum { transaction_timeout = 1000 /* ms */, most_staged = 128 };
+
+// What a transaction changes: each parameter once, with the last value written to it. A list, for a second set of all
+// parameters takes more memory than the rest of the store.
+struct StagedWrites {
+  Word index[most_staged];
+  float value[most_staged];
+  Word count;
+};
+
 struct ParameterStore {
   Parameters active;
-  Parameters staged;
+  StagedWrites staged;
   bool open;    // a transaction is going on
   Word writes;  // accepted in it
   Long used;    // ms, when it was last touched
 };
 
-enum { transaction_timeout = 1000 /* ms */ };
+// The place of a parameter among the staged writes, staged.count when it is not among them.
+inline int staged_place(const StagedWrites& staged, int index) {
+  int place = 0;
+  while (place < int(staged.count) && int(staged.index[place]) != index) {
+    ++place;
+  }
+  return place;
+}
+
+// As the transaction has it, or else as it is in effect; nullptr when there is no such index.
+inline const float* stored_parameter(ParameterStore& store, int index) {
+  const int place = store.open ? staged_place(store.staged, index) : int(store.staged.count);
+  return place < int(store.staged.count) ? &store.staged.value[place] : parameter(store.active, index);
+}
+
+// Puts the staged values into effect and the active ones into the list: called again, it takes that back.
+inline void exchange_staged(ParameterStore& store) {
+  for (int i = 0; i < int(store.staged.count); ++i) {
+    std::swap(*parameter(store.active, int(store.staged.index[i])), store.staged.value[i]);
+  }
+}
 
 inline ParameterResult parameters_begin(ParameterStore& store, WriteAccess access, Long hash, Long now) {
   store.open = false;
@@ -28,7 +60,7 @@ inline ParameterResult parameters_begin(ParameterStore& store, WriteAccess acces
   if (access == WriteAccess::none) {
     return ParameterResult::moving;
   }
-  store.staged = store.active;
+  store.staged.count = 0;
   store.open = true;
   store.writes = 0;
   store.used = now;
@@ -53,12 +85,18 @@ inline ParameterResult parameters_write(ParameterStore& store, WriteAccess acces
   if (value < bounds->lower || value > bounds->upper) {
     return ParameterResult::out_of_range;
   }
-  *parameter(store.staged, index) = value;
+  const int place = staged_place(store.staged, index);
+  if (place == most_staged) {
+    return ParameterResult::too_many;
+  }
+  store.staged.index[place] = Word(index);
+  store.staged.value[place] = value;
+  store.staged.count = Word(place < int(store.staged.count) ? int(store.staged.count) : place + 1);
   ++store.writes;
   return ParameterResult::ok;
 }
 
-// Whether the staged set may take effect; it is the caller who puts it there, after making sure of the machine.
+// Whether the staged writes may take effect; it is the caller who exchanges them, and makes sure of the machine.
 inline ParameterResult parameters_ready(ParameterStore& store, WriteAccess access, Word count) {
   if (!store.open) {
     return ParameterResult::no_transaction;

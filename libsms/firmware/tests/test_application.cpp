@@ -190,6 +190,15 @@ TEST_CASE("application: a set of parameters takes effect whole, or not at all") 
     b.host.send(sms::frame::ParameterWrite{0, 0, stroke, -1.0f});
     b.host.send(sms::frame::ParameterCommit{0, 0, 0, 2});
   }
+  SUBCASE("there are more than a transaction holds") {
+    begin();
+    for (int i = 0; i < fw::most_staged; ++i) {
+      const int place = i < int(gain) ? i : i + 1;
+      b.host.send(sms::frame::ParameterWrite{0, 0, Long(place), sms::param(b.app->parameters.active.machine, place)});
+      b.run(2);
+    }
+    b.host.send(sms::frame::ParameterCommit{0, 0, 0, Long(fw::most_staged) + 1u});
+  }
   SUBCASE("the hash is another's") {
     b.host.send(sms::frame::ParameterBegin{0, 0, fw::parameter_hash() ^ 1u});
     b.host.send(sms::frame::ParameterWrite{0, 0, gain, 7.0f});
@@ -199,6 +208,8 @@ TEST_CASE("application: a set of parameters takes effect whole, or not at all") 
   CHECK(unchanged());
   CHECK(write(b, {{"proportional_gain", 7.0f}}));
   CHECK(double(b.app->parameters.active.machine.proportional_gain) == doctest::Approx(7.0));
+  CHECK(write(b, {{"proportional_gain", 6.0f}, {"derivative_gain", 0.2f}, {"proportional_gain", 5.0f}}));
+  CHECK(double(b.app->parameters.active.machine.proportional_gain) == doctest::Approx(5.0));
 }
 
 TEST_CASE("application: a capture holds what the telemetry said") {
