@@ -121,6 +121,8 @@ def watch(
     Gaps, restarts of the clock, silence and bus faults are states, and no alarms. What happened stands in
     *events.jsonl*, one JSON object a line.
     """
+    from sms.rigs.threads import one_thread_for_matrices, threads  # noqa: PLC0415
+
     with ExitStack() as stack:
         beside, loaded = _prepared(
             rig, out, keep, on_alarm, (learn, false_alarms_per_day, diagnose_after)
@@ -148,7 +150,8 @@ def watch(
             timer.daemon = True
             timer.start()
             stack.callback(timer.cancel)
-        stack.enter_context(_one_core())
+        threads()  # what is wrong with it is said before the watch begins
+        stack.enter_context(one_thread_for_matrices())
         try:
             with ended_like_ctrl_c(), _live(console, beside, quiet):
                 beside.run(chunks, backlog)
@@ -258,21 +261,6 @@ def _until(chunks: Iterator[Chunk], stopped: threading.Event) -> Iterator[Chunk]
         if stopped.is_set():
             return
         yield chunk
-
-
-@contextmanager
-def _one_core() -> Iterator[None]:
-    """Small matrices on several threads wait for each other most of the time."""
-    from sms.rigs.threads import threads  # noqa: PLC0415
-
-    threads()
-    try:
-        from threadpoolctl import threadpool_limits  # noqa: PLC0415 (an optional extra)
-    except ImportError:
-        yield
-        return
-    with threadpool_limits(1):
-        yield
 
 
 @contextmanager

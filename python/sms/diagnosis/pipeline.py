@@ -24,9 +24,10 @@ from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.io.thinning import raise_if_too_many, thinned
 from sms.rigs.kinds import KINDS
-from sms.rigs.threads import threads
+from sms.rigs.threads import one_thread_for_matrices, threads
 
 
+@one_thread_for_matrices()
 def diagnose(
     path: str | os.PathLike[str],
     seed: int = 1,

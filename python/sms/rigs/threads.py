@@ -1,8 +1,14 @@
-"""How many threads the core takes to evaluate the windows of a record, which do not depend on each other."""
+"""How many threads the core takes to evaluate the windows of a record, which do not depend on each other; and that
+linear algebra takes one.
+"""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from threadpoolctl import threadpool_limits
 
 from sms.errors import InputError
 
@@ -25,3 +31,12 @@ def threads() -> int:
 def use_threads(number: int) -> None:
     """For the rest of this process."""
     os.environ[VARIABLE] = str(number)
+
+
+@contextmanager
+def one_thread_for_matrices() -> Iterator[None]:
+    """BLAS on one thread meanwhile. Products of a few milliseconds gain nothing from two, which wait for each other
+    in a loop: beside any other work on the machine a hundred times as long as the product takes.
+    """
+    with threadpool_limits(1, user_api="blas"):
+        yield

@@ -24,7 +24,7 @@ def equation(rng: np.random.Generator, missing: float) -> Equation:
 
 
 def test_a_law_that_is_missing_in_one_region_is_found_there() -> None:
-    """In the median of its draws: the regions' edges are quartiles of samples, and a false discovery is one of its lots."""
+    """In the median of draws: the regions' edges are quartiles of samples, and false discoveries are allowed."""
     rng = draw("a law in one region")
     errors, none_far = [], []
     for _ in range(20):

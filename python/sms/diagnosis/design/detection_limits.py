@@ -38,6 +38,7 @@ from sms.io.signals import SIGNALS, of_legs, without_leg
 from sms.io.thinning import thinned
 from sms.parameters import common_parameter
 from sms.rigs.kinds import KINDS, kind_of
+from sms.rigs.threads import one_thread_for_matrices
 from sms.units_display import display_unit, significant
 
 
@@ -166,6 +167,7 @@ def published_rig(kind: str) -> Rig:
     )
 
 
+@one_thread_for_matrices()
 def limits_of(
     rig: Rig, kind: Kind, records: Sequence[Run], noise: dict[str, float], effects: Sequence[Effect]
 ) -> list[Limit]:

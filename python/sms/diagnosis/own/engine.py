@@ -35,8 +35,10 @@ from sms.io.write import write_text_atomically
 from sms.report.diagnosis import report_html
 from sms.report.files import header_of
 from sms.report.page import write_page
+from sms.rigs.threads import one_thread_for_matrices
 
 
+@one_thread_for_matrices()
 def diagnose_model(
     model: Model,
     records: Sequence[Record],
