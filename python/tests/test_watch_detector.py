@@ -141,6 +141,17 @@ def test_an_alarm_ends_after_a_repair_and_the_next_has_another_number() -> None:
     assert numbers[269] == 2
 
 
+@pytest.mark.parametrize("seed", [250, 1199033865])
+def test_what_an_ended_alarm_has_seen_raises_no_other(seed: int) -> None:
+    """Draws in which the longest stretch, which held the end of the fault, went over its threshold again."""
+    rng, b = np.random.default_rng(seed), baseline()
+    judge = Judge(Detector(b, 0.5))
+    wrong = np.array([0.0, 15.0, 0.0, 0.0]) * np.array([*UNITS, 1.0])
+    for k in range(160):
+        judge.judge(judge.detector.push(drawn(b, rng, k, wrong if 70 <= k < 90 else None)))
+    assert judge.count == 1
+
+
 def test_one_wild_motion_is_no_alarm() -> None:
     """Less than four segments that are far off, whatever comes before and after."""
     rng, b = draw("wild segments"), baseline()

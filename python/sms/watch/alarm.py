@@ -124,7 +124,8 @@ class Judge:
     """Raises an alarm, refines what it says while it stands, and lets it end.
 
     It stands until every test at every onset is well below its threshold again: after a repair the longest stretches
-    hold what was wrong for five minutes more.
+    hold what was wrong for five minutes more. What comes after has to show itself in what comes after: the segments of
+    an alarm that has ended raise no other.
     """
 
     detector: Detector
@@ -135,6 +136,8 @@ class Judge:
     def judge(self, look: Look) -> Alarm | None:
         """The alarm that stands after this look."""
         if look.highest < (1.0 if self.standing is None else ENDS):
+            if self.standing is not None:
+                self.detector.sums.clear()
             self.standing = None
             return None
         test = self.detector.baseline.tests[look.test]
