@@ -128,9 +128,20 @@ void bind_evaluate(Class& problem) {
 
 std::unique_ptr<est::PoseProblem> make_pose_problem(est::RowMatrix extension, est::RowMatrix pose,
                                                     Eigen::VectorXd extension_noise, Eigen::VectorXd pose_noise,
-                                                    const LegParams& start) {
+                                                    const LegParams& start, const est::RowMatrix& ground_marks,
+                                                    const est::RowMatrix& platform_marks) {
+  const Eigen::Index distances = ground_marks.rows();
+  if (platform_marks.rows() != distances ||
+      (distances > 0 && (ground_marks.cols() != 3 || platform_marks.cols() != 3))) {
+    throw py::value_error("ground_marks and platform_marks are (distances, 3)");
+  }
+  std::vector<est::MarkedDistance> marks;
+  for (Eigen::Index d = 0; d < distances; ++d) {
+    marks.push_back({ground_marks.row(d).transpose(), platform_marks.row(d).transpose()});
+  }
   return std::make_unique<est::PoseProblem>(
-      est::MeasuredPoses{std::move(extension), std::move(pose), std::move(extension_noise), std::move(pose_noise)},
+      est::MeasuredPoses{std::move(extension), std::move(pose), std::move(extension_noise), std::move(pose_noise),
+                         std::move(marks)},
       start);
 }
 
@@ -150,13 +161,15 @@ void bind_poses(py::module_& m) {
       py::class_<est::PoseProblem>(m, "PoseProblem",
                                    "Measured poses against the forward kinematics of the extensions read with them, "
                                    "whitened: extension (n, 3) m, "
-                                   "pose (n, 6) roll, pitch, height, yaw, x, y in rad and m, NaN where it was not "
-                                   "measured; noises (3,) and (6,), "
+                                   "pose (n, 6 + distances) roll, pitch, height, yaw, x, y in rad and m and distances "
+                                   "between marks (distances, 3), which are given in world axes with the platform at "
+                                   "rest; NaN where it was not measured; noises (3,) and (6 + distances,), "
                                    "standard deviations.")
           .def(py::init(&make_pose_problem), py::kw_only(), py::arg("extension"), py::arg("pose"),
-               py::arg("extension_noise"), py::arg("pose_noise"), py::arg("start"))
+               py::arg("extension_noise"), py::arg("pose_noise"), py::arg("start"),
+               py::arg("ground_marks") = est::RowMatrix(0, 3), py::arg("platform_marks") = est::RowMatrix(0, 3))
           .def("predict", &est::PoseProblem::predict, py::arg("params"),
-               "(n, 6): what the pose sensors should read; NaN where the parameters have no pose.")
+               "(n, 6 + distances): what the pose sensors should read; NaN where the parameters have no pose.")
           .def_property_readonly("first_row", &est::PoseProblem::first_row, "Of each pose, and the number of rows.");
   bind_evaluate<est::PoseProblem>(problem);
   py::class_<est::Calibration>(m, "Calibration", "The mechanism that comes closest to measured poses.")

@@ -104,6 +104,7 @@ GENERATED: Mapping[str, Callable[[], str]] = {
     "python/sms/_core.pyi": stub,
     "python/sms/schemas/rig.schema.json": lambda: schemas.made("rig"),
     "python/sms/schemas/scenario.schema.json": lambda: schemas.made("scenario"),
+    "python/sms/schemas/poses.schema.json": lambda: schemas.made("poses"),
 }
 
 

@@ -16,15 +16,21 @@ namespace estimation {
 namespace {
 
 template <typename S>
-Eigen::Matrix<S, pose_channels, 1> vector_of_pose(const Pose<S>& pose) {
-  Eigen::Matrix<S, pose_channels, 1> v;
-  v << pose.roll, pose.pitch, pose.height, pose.yaw, pose.x, pose.y;
-  return v;
+using Readings = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+
+template <typename S>
+S distance_of(const MarkedDistance& marks, const Geometry<S>& g, const Pose<S>& pose) {
+  using std::sqrt;
+  const Vec3<S> arm = marks.platform.cast<S>() - g.reference;
+  const Vec3<S> place(pose.x, pose.y, -pose.height);
+  const Vec3<S> between = attitude(pose.roll, pose.pitch, pose.yaw).rotation * arm + place - marks.ground.cast<S>();
+  return sqrt(between.squaredNorm());
 }
 
 // What the pose sensors should read where the position sensors read `extension`.
 template <typename S>
-bool predicted(const LegParams<S>& params, const Vec3<S>& extension, Eigen::Matrix<S, pose_channels, 1>& reading) {
+bool predicted(const LegParams<S>& params, const std::vector<MarkedDistance>& distances, const Vec3<S>& extension,
+               Readings<S>& reading) {
   const Geometry<S> g = make_geometry<S>(params);
   Vec3<S> truth;
   for (int i = 0; i < 3; ++i) {
@@ -36,16 +42,28 @@ bool predicted(const LegParams<S>& params, const Vec3<S>& extension, Eigen::Matr
   if (forward_kinematics(g, truth, rest_pose(value_of(g)), pose) != SMS_OK) {
     return false;
   }
-  reading = vector_of_pose(pose);
-  reading(0) = sensor_reading(pose.roll, params.sensor_gain_roll, params.sensor_offset_roll);
-  reading(1) = sensor_reading(pose.pitch, params.sensor_gain_pitch, params.sensor_offset_pitch);
+  reading.resize(pose_coordinates + static_cast<Eigen::Index>(distances.size()));
+  reading.template head<pose_coordinates>()
+      << sensor_reading(pose.roll, params.sensor_gain_roll, params.sensor_offset_roll),
+      sensor_reading(pose.pitch, params.sensor_gain_pitch, params.sensor_offset_pitch), pose.height, pose.yaw, pose.x,
+      pose.y;
+  for (std::size_t d = 0; d < distances.size(); ++d) {
+    reading(pose_coordinates + static_cast<Eigen::Index>(d)) = distance_of(distances[d], g, pose);
+  }
   return true;
 }
 
 void check(const MeasuredPoses& m) {
-  if (m.extension.rows() < 1 || m.extension.cols() != 3 || m.pose.cols() != pose_channels ||
-      m.pose.rows() != m.extension.rows() || m.extension_noise.size() != 3 || m.pose_noise.size() != pose_channels) {
-    throw std::invalid_argument("poses: extension is (n, 3), pose (n, 6), extension_noise (3), pose_noise (6)");
+  const Eigen::Index channels = pose_coordinates + static_cast<Eigen::Index>(m.distances.size());
+  if (m.extension.rows() < 1 || m.extension.cols() != 3 || m.pose.cols() != channels ||
+      m.pose.rows() != m.extension.rows() || m.extension_noise.size() != 3 || m.pose_noise.size() != channels) {
+    throw std::invalid_argument(
+        "poses: extension is (n, 3), pose (n, 6 + distances), extension_noise (3), pose_noise (6 + distances)");
+  }
+  for (const MarkedDistance& d : m.distances) {
+    if (!d.ground.allFinite() || !d.platform.allFinite()) {
+      throw std::invalid_argument("poses: a mark of a distance is no point");
+    }
   }
   if (!(m.extension_noise.minCoeff() > 0.0) || !(m.pose_noise.minCoeff() > 0.0)) {
     throw std::invalid_argument("poses: every noise is above zero");
@@ -59,25 +77,25 @@ PoseProblem::PoseProblem(MeasuredPoses measured, const LegParams<double>& start)
   check(measured_);
   const LegParams<Jet<4>> params = cast<Jet<4>>(start);
   for (int pose = 0; pose < poses(); ++pose) {
-    std::vector<int> channels;
-    for (int c = 0; c < pose_channels; ++c) {
+    std::vector<int> read;
+    for (int c = 0; c < channels(); ++c) {
       if (std::isfinite(measured_.pose(pose, c))) {
-        channels.push_back(c);
+        read.push_back(c);
       }
     }
     Vec3<Jet<4>> extension;
     for (int i = 0; i < 3; ++i) {
       extension(i) = Jet<4>(measured_.extension(pose, i), i);
     }
-    Eigen::Matrix<Jet<4>, pose_channels, 1> reading;
-    if (channels.empty() || !predicted(params, extension, reading)) {
+    Readings<Jet<4>> reading;
+    if (read.empty() || !predicted(params, measured_.distances, extension, reading)) {
       throw std::invalid_argument("poses: pose " + std::to_string(pose + 1) +
-                                  (channels.empty() ? " has no reading" : " is out of reach of the start's geometry"));
+                                  (read.empty() ? " has no reading" : " is out of reach of the start's geometry"));
     }
-    const auto n = static_cast<Eigen::Index>(channels.size());
+    const auto n = static_cast<Eigen::Index>(read.size());
     Eigen::MatrixXd slope(n, 3), covariance = Eigen::MatrixXd::Zero(n, n);
     for (Eigen::Index r = 0; r < n; ++r) {
-      const int c = channels[static_cast<std::size_t>(r)];
+      const int c = read[static_cast<std::size_t>(r)];
       for (int i = 0; i < 3; ++i) {
         slope(r, i) = reading(c).v[i] * measured_.extension_noise(i);
       }
@@ -87,15 +105,15 @@ PoseProblem::PoseProblem(MeasuredPoses measured, const LegParams<double>& start)
     const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
     whitening_.push_back(factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n)));
     first_row_.push_back(first_row_.back() + static_cast<int>(n));
-    channels_.push_back(std::move(channels));
+    read_.push_back(std::move(read));
   }
 }
 
 RowMatrix PoseProblem::predict(const LegParams<double>& params) const {
-  RowMatrix readings = RowMatrix::Constant(poses(), pose_channels, std::numeric_limits<double>::quiet_NaN());
+  RowMatrix readings = RowMatrix::Constant(poses(), channels(), std::numeric_limits<double>::quiet_NaN());
   for (int pose = 0; pose < poses(); ++pose) {
-    Eigen::Matrix<double, pose_channels, 1> reading;
-    if (predicted(params, Vec3<double>(measured_.extension.row(pose).transpose()), reading)) {
+    Readings<double> reading;
+    if (predicted(params, measured_.distances, Vec3<double>(measured_.extension.row(pose).transpose()), reading)) {
       readings.row(pose) = reading.transpose();
     }
   }
@@ -104,18 +122,18 @@ RowMatrix PoseProblem::predict(const LegParams<double>& params) const {
 
 void PoseProblem::evaluate_pose(int pose, const LegParams<double>& params, const std::vector<int>& free,
                                 Eigen::VectorXd* residual, RowMatrix* jacobian) const {
-  const std::vector<int>& channels = channels_[static_cast<std::size_t>(pose)];
+  const std::vector<int>& read = read_[static_cast<std::size_t>(pose)];
   const auto model = [&](const auto& machine, auto* out) {
     using S = typename std::remove_reference<decltype(out[0])>::type;
     const Vec3<S> extension = measured_.extension.row(pose).transpose().template cast<S>();
-    Eigen::Matrix<S, pose_channels, 1> reading;
-    const bool found = predicted(machine, extension, reading);
-    for (std::size_t r = 0; r < channels.size(); ++r) {
-      out[r] = found ? S(reading(channels[r]) - S(measured_.pose(pose, channels[r])))
-                     : S(std::numeric_limits<double>::quiet_NaN());
+    Readings<S> reading;
+    const bool found = predicted(machine, measured_.distances, extension, reading);
+    for (std::size_t r = 0; r < read.size(); ++r) {
+      out[r] =
+          found ? S(reading(read[r]) - S(measured_.pose(pose, read[r]))) : S(std::numeric_limits<double>::quiet_NaN());
     }
   };
-  evaluate_with_jets<12>(model, static_cast<int>(channels.size()), params, free, residual, jacobian);
+  evaluate_with_jets<12>(model, static_cast<int>(read.size()), params, free, residual, jacobian);
   const Eigen::MatrixXd& whitening = whitening_[static_cast<std::size_t>(pose)];
   *residual = (whitening * *residual).eval();
   if (jacobian != nullptr) {

@@ -1,7 +1,7 @@
 // The mechanism as built, from measured poses.
 //
-// A pose is three readings of the actuators' position sensors and some of roll, pitch, height, yaw, x and y. The readings
-// of the actuators go through the library's forward kinematics, whose last Newton step carries the derivatives (the
+// A pose is three readings of the actuators' position sensors and some of roll, pitch, height, yaw, x and y, and of
+// distances between marks on the ground and on the platform. The readings of the actuators go through the library's forward kinematics, whose last Newton step carries the derivatives (the
 // implicit function theorem on |l_i|^2 = L_i^2); what is left is the measured pose. Its covariance is that of the pose
 // sensors and, to first order, that of the position sensors through the same derivative:
 //
@@ -11,6 +11,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "estimation/leg_params.hpp"
 #include "estimation/problem.hpp"
@@ -18,13 +19,20 @@
 namespace sms {
 namespace estimation {
 
-constexpr int pose_channels = 6;  // roll, pitch, height, yaw, x, y
+constexpr int pose_coordinates = 6;  // roll, pitch, height, yaw, x, y
+
+// A tape, a wire or a laser between two marks. Both are given in world axes with the platform at rest, as joints are.
+struct MarkedDistance {
+  Vec3<double> ground;    // m
+  Vec3<double> platform;  // m
+};
 
 struct MeasuredPoses {
-  RowMatrix extension;              // (poses, 3) as read, m
-  RowMatrix pose;                   // (poses, 6) as read, rad and m; NaN: not measured
-  Eigen::VectorXd extension_noise;  // (3), standard deviations, m
-  Eigen::VectorXd pose_noise;       // (6), rad and m
+  RowMatrix extension;                    // (poses, 3) as read, m
+  RowMatrix pose;                         // (poses, 6 + distances) as read, rad and m; NaN: not measured
+  Eigen::VectorXd extension_noise;        // (3), standard deviations, m
+  Eigen::VectorXd pose_noise;             // (6 + distances), rad and m
+  std::vector<MarkedDistance> distances;  // what the columns behind the six coordinates are
 };
 
 class PoseProblem : public ProblemOf<LegParams<double>> {
@@ -37,7 +45,7 @@ class PoseProblem : public ProblemOf<LegParams<double>> {
   int rows() const override { return first_row_.back(); }
   const std::vector<int>& first_row() const { return first_row_; }  // (poses + 1)
 
-  // What the pose sensors should read, (poses, 6); NaN where there is no pose.
+  // What the pose sensors should read, (poses, 6 + distances); NaN where there is no pose.
   RowMatrix predict(const LegParams<double>& params) const;
 
   // NaN where the parameters have no pose of these extensions.
@@ -47,8 +55,10 @@ class PoseProblem : public ProblemOf<LegParams<double>> {
                      RowMatrix* jacobian) const;
 
  private:
+  int channels() const { return static_cast<int>(measured_.pose.cols()); }
+
   MeasuredPoses measured_;
-  std::vector<std::vector<int>> channels_;  // of each pose, those that were measured
+  std::vector<std::vector<int>> read_;      // channels of each pose that were measured
   std::vector<Eigen::MatrixXd> whitening_;  // L^-1 of each pose
   std::vector<int> first_row_;
 };

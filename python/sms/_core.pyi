@@ -2915,9 +2915,9 @@ class LegParams(Params):
         """
 class PoseProblem:
     """
-    Measured poses against the forward kinematics of the extensions read with them, whitened: extension (n, 3) m, pose (n, 6) roll, pitch, height, yaw, x, y in rad and m, NaN where it was not measured; noises (3,) and (6,), standard deviations.
+    Measured poses against the forward kinematics of the extensions read with them, whitened: extension (n, 3) m, pose (n, 6 + distances) roll, pitch, height, yaw, x, y in rad and m and distances between marks (distances, 3), which are given in world axes with the platform at rest; NaN where it was not measured; noises (3,) and (6 + distances,), standard deviations.
     """
-    def __init__(self, *, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"], pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"], extension_noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pose_noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], start: LegParams) -> None:
+    def __init__(self, *, extension: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"], pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"], extension_noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], pose_noise: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], start: LegParams, ground_marks: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] = ..., platform_marks: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] = ...) -> None:
         ...
     def evaluate(self, params: LegParams, free: collections.abc.Sequence[str] = []) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
         """
@@ -2925,7 +2925,7 @@ class PoseProblem:
         """
     def predict(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (n, 6): what the pose sensors should read; NaN where the parameters have no pose.
+        (n, 6 + distances): what the pose sensors should read; NaN where the parameters have no pose.
         """
     @property
     def first_row(self) -> list[int]:

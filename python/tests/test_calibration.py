@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from sms._core import LegParams
 from sms.calibration.fit import calibrate_poses, problem_of, unknowns
 from sms.calibration.proposal import END_MARGIN, propose
 from sms.calibration.result import geometry_file
-from sms.calibration.rig import PosesRig, load_poses
+from sms.calibration.rig import Distance, Poses, PosesRig, load_poses
 from sms.cli import app
 from sms.cli.simulate import settings_in_si
 from sms.errors import InputError
@@ -152,6 +153,97 @@ def test_command(machine: Machine, tmp_path: Path) -> None:
 def test_bad_input(machine: Machine, tmp_path: Path, change: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
         load_poses(_write(tmp_path, machine.rig, change))
+
+
+MARKS = [
+    Distance("laser", np.array([2.0, 0.5, 0.0]), np.array([0.4, 0.3, -1.3]), 2e-4),
+    Distance("wire", np.array([-1.0, 2.0, -0.2]), np.array([-0.3, 0.2, -1.3]), 2e-4),
+]
+
+
+def _with_distances(machine: Machine, rng: np.random.Generator) -> PosesRig:
+    """The machine's own poses, with tapes to two marks beside its inclinometer."""
+    rig = replace(machine.rig, distances=tuple(MARKS))
+    rig = replace(rig, pose_noise=np.append(rig.pose_noise, [d.noise for d in MARKS]))
+
+    def read(poses: Poses, noise: float) -> Poses:
+        asked = np.hstack([poses.pose, np.zeros((len(poses), len(MARKS)))])
+        exact = problem_of(replace(poses, pose=asked), rig, machine.truth).predict(machine.truth)
+        behind = exact[:, 6:] + noise * rng.standard_normal((len(poses), len(MARKS)))
+        return replace(poses, pose=np.hstack([poses.pose, behind]))
+
+    return replace(rig, fitted=read(rig.fitted, 2e-4), validation=read(rig.validation, 0.0))
+
+
+def test_a_distance_is_between_its_marks_at_rest(machine: Machine) -> None:
+    rig = _with_distances(machine, np.random.default_rng(SEED))
+    nominal = LegParams(sms.Params())
+    pose = np.zeros((1, 8))
+    rest = Poses(np.zeros((1, 3)), pose, np.ones(1, dtype=np.int64))
+    said = problem_of(rest, rig, nominal).predict(nominal)[0, 6:]
+    assert said == pytest.approx([np.linalg.norm(d.platform - d.ground) for d in MARKS], abs=1e-9)
+
+
+def test_distances_have_the_derivatives_of_their_residual(machine: Machine) -> None:
+    rig, start = _with_distances(machine, np.random.default_rng(SEED)), machine.truth
+    problem = problem_of(rig.fitted, rig, start)
+    names = [u.name for u in unknowns(rig)]
+    _, jacobian = problem.evaluate(start, names)
+    for k, name in enumerate(names):
+        step, low, high = 1e-6, start.copy(), start.copy()
+        low[name] -= step
+        high[name] += step
+        slope = (problem.evaluate(high)[0] - problem.evaluate(low)[0]) / (2 * step)
+        assert jacobian[:, k] == pytest.approx(slope, rel=1e-4, abs=1e-5 * np.abs(jacobian).max())
+
+
+def test_distances_tell_the_scale(machine: Machine) -> None:
+    """Which an inclinometer alone does not; and where the ground's joints are against the marks."""
+    rng = np.random.default_rng(SEED)
+    rig = _with_distances(machine, rng)
+    found, alone = calibrate_poses(rig), calibrate_poses(machine.rig)
+    told, told_alone = ({k.words: k.information for k in c.combinations} for c in (found, alone))
+    scale = "the scale: all joints, lengths and extensions by one factor"
+    assert told[scale] > 1.0 > told_alone[scale]
+    before, after = found.validation.distance
+    assert after < 0.2 * before
+    assert found.validation.attitude[1] < 0.2 * found.validation.attitude[0]
+    assert np.isnan(alone.validation.distance).all()
+    off = [abs(f.value - machine.truth[f.unknown.name]) / f.deviation for f in found.found]
+    assert np.mean(np.array(off) < 1.96) > 0.8  # one machine: 50 parameters that go together
+    page = calibration_html(found, [])
+    assert "distances [mm]" in page
+
+
+def test_distances_in_the_file(machine: Machine, tmp_path: Path) -> None:
+    tables = "".join(
+        f"[distances.{d.name}]\nground = {[f'{v} m' for v in d.ground]}\n"
+        f"platform = {[f'{v} m' for v in d.platform]}\nnoise = '0.2 mm'\n"
+        for d in MARKS
+    )
+    rig = _with_distances(machine, np.random.default_rng(SEED))
+    file = _write(tmp_path, rig, tables)
+    lines = (tmp_path / "poses.csv").read_text().splitlines()
+    lines[0] += ",distance_laser [mm],distance_wire [m]"
+    for k, row in enumerate(rig.fitted.pose):
+        lines[k + 1] += f",{1e3 * row[6]:.6f}," + ("" if k == 3 else f"{row[7]:.9f}")
+    (tmp_path / "poses.csv").write_text("\n".join(lines) + "\n")
+    loaded = load_poses(file)
+    assert loaded.channels[6:] == ("distance_laser", "distance_wire")
+    assert loaded.fitted.pose[:3, 6:] == pytest.approx(rig.fitted.pose[:3, 6:], abs=1e-8)
+    assert np.isnan(loaded.fitted.pose[3, 7])
+    assert loaded.pose_noise[6:] == pytest.approx([2e-4, 2e-4])
+    result = CliRunner().invoke(
+        app, ["calibrate", "geometry", str(file), "--out", str(tmp_path / "out")]
+    )
+    assert result.exit_code == 0, result.output
+    assert "distances on " in result.output
+    file.write_text(file.read_text().replace("[distances.laser]", "[distances.lasr]"))
+    with pytest.raises(InputError, match=r"declare its marks in \[distances\.laser\]"):
+        load_poses(file)
+    file.write_text(file.read_text().replace("'2.0 m', ", "", 1))
+    with pytest.raises(InputError, match=r"\[distances\] lasr\.ground"):
+        load_poses(file)
 
 
 def test_unknown_column(machine: Machine, tmp_path: Path) -> None:

@@ -16,6 +16,8 @@ HEADS = {
     "complete and check. What they are for and complete examples: :doc:`/rig_file`.",
     "scenario": "Every table and key of a scenario, from the schema that ``sms schema scenario`` writes. What they are "
     "for: :doc:`/simulation`.",
+    "poses": "Every table and key of a rig file of ``sms calibrate geometry``, from the schema that ``sms schema "
+    "poses`` writes. What they are for: :doc:`/calibration`.",
 }
 
 
@@ -23,7 +25,11 @@ def pages() -> Iterator[tuple[str, str]]:
     """(name, text) of every page."""
     for subject in schemas.SUBJECTS:
         schema = json.loads(schemas.shipped(subject))
-        label = {"rig": "Keys of a rig file", "scenario": "Keys of a scenario"}[subject]
+        label = {
+            "rig": "Keys of a rig file",
+            "scenario": "Keys of a scenario",
+            "poses": "Keys of a rig file of poses",
+        }[subject]
         out = [*title(label), HEADS[subject], ""]
         for name, entry in schema["properties"].items():
             out += _table(name, entry, schema, name in schema.get("required", ()))

@@ -25,7 +25,7 @@ from scipy.optimize import least_squares
 from sms import Params, _core, inverse_kinematics
 from sms.arrays import Array
 from sms.calibration.fit import COVERAGE, Calibrated, calibrate_poses, problem_of, unknowns
-from sms.calibration.rig import TOLERANCES, Poses, PosesRig
+from sms.calibration.rig import Poses, PosesRig, default_tolerances
 
 UNSEEN = 50
 """Poses on which a calibration is judged, without noise."""
@@ -50,11 +50,12 @@ def draw(rng: np.random.Generator, poses: int, tracker: bool) -> Machine:
     empty = Poses(np.empty((0, 3)), np.empty((0, 6)), np.empty(0, dtype=np.int64))
     measured = np.arange(6) < (6 if tracker else 2)
     noise = np.where(np.isin(np.arange(6), (0, 1, 3)), np.radians(0.02), 1e-4)
-    defaults = {name: default for name, (_, default) in TOLERANCES.items()}
     blank = Poses(
         np.zeros((1, 3)), np.where(measured, 0.0, np.nan)[None, :], np.ones(1, dtype=np.int64)
     )
-    rig = PosesRig("drawn", Path("drawn"), (), blank, empty, np.full(3, 1e-4), noise, defaults)
+    rig = PosesRig(
+        "drawn", Path("drawn"), (), blank, empty, np.full(3, 1e-4), noise, default_tolerances()
+    )
     truth = nominal.copy()
     for unknown in unknowns(rig):
         truth[unknown.name] = nominal[unknown.name] + unknown.deviation * rng.standard_normal()

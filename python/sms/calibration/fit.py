@@ -15,7 +15,7 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array
 from sms.calibration.combinations import Combination, combinations_of
-from sms.calibration.rig import Poses, PosesRig
+from sms.calibration.rig import CHANNELS, Poses, PosesRig
 from sms.parameters import PARAMETERS
 
 LINKS = range(1, 7)
@@ -93,12 +93,12 @@ class Outlier:
 
     row: int  #: in its file, from 1
     deviations: float  #: how far off it is, in standard deviations of its noise
-    error: Array  #: (6,) measured less calibrated, rad and m; NaN: not measured
+    error: Array  #: (6 + distances,) measured less calibrated, rad and m; NaN: not measured
 
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """Errors on the validation poses, measured less predicted, (n, 6) in rad and m."""
+    """Errors on the validation poses, measured less predicted, (n, 6 + distances) in rad and m."""
 
     before: Array
     after: Array
@@ -114,6 +114,12 @@ class Judgement:
         """Before and after, rad."""
         return self.rms(self.before, slice(0, 2)), self.rms(self.after, slice(0, 2))
 
+    @property
+    def distance(self) -> tuple[float, float]:
+        """Before and after, m."""
+        behind = slice(len(CHANNELS), None)
+        return self.rms(self.before, behind), self.rms(self.after, behind)
+
 
 @dataclass(frozen=True, eq=False)
 class Calibrated:
@@ -126,7 +132,7 @@ class Calibrated:
     covariance: Array  #: (parameters, parameters), SI
     combinations: tuple[Combination, ...]
     outliers: tuple[Outlier, ...]
-    errors_before: Array  #: of the fitted poses, (n, 6)
+    errors_before: Array  #: of the fitted poses, (n, 6 + distances)
     errors_after: Array
     validation: Judgement
     iterations: int
@@ -142,6 +148,8 @@ def problem_of(poses: Poses, rig: PosesRig, start: _core.LegParams) -> _core.Pos
         extension_noise=rig.extension_noise,
         pose_noise=rig.pose_noise,
         start=start,
+        ground_marks=np.array([d.ground for d in rig.distances]).reshape(-1, 3),
+        platform_marks=np.array([d.platform for d in rig.distances]).reshape(-1, 3),
     )
 
 
@@ -193,7 +201,8 @@ def covariance_of(scaled: Array) -> Array:
 def judge(rig: PosesRig, before: _core.LegParams, after: _core.LegParams) -> Judgement:
     """The validation poses, with the nominal and with the calibrated mechanism."""
     if not len(rig.validation):
-        return Judgement(np.empty((0, 6)), np.empty((0, 6)))
+        none = np.empty((0, len(rig.channels)))
+        return Judgement(none, none)
     problem = problem_of(rig.validation, rig, before)
     measured = rig.validation.pose
     return Judgement(measured - problem.predict(before), measured - problem.predict(after))

@@ -10,7 +10,6 @@ import tomlkit
 
 from sms.calibration.fit import COVERAGE, Calibrated, Found
 from sms.calibration.proposal import Proposal
-from sms.calibration.rig import CHANNELS
 
 
 def sentences(c: Calibrated, proposals: Sequence[Proposal]) -> list[str]:
@@ -29,7 +28,13 @@ def sentences(c: Calibrated, proposals: Sequence[Proposal]) -> list[str]:
             f"attitude on {len(c.rig.validation)} validation poses: {before:.3f} deg off before, {after:.3f} deg after "
             "(root mean square, with the noise of the inclinometer)"
         )
-    elif not len(c.rig.validation):
+    if len(c.rig.validation) and np.isfinite(c.validation.distance[0]):
+        before, after = 1e3 * np.array(c.validation.distance)
+        said.append(
+            f"distances on {len(c.rig.validation)} validation poses: {before:.2f} mm off before, {after:.2f} mm after "
+            "(root mean square, with their noise)"
+        )
+    if not len(c.rig.validation):
         said.append(
             "there are no validation poses: nothing says how well the result holds elsewhere"
         )
@@ -75,7 +80,7 @@ def to_dict(c: Calibrated, proposals: Sequence[Proposal]) -> dict[str, Any]:
             {
                 "pose": o.row,
                 "standard_deviations": o.deviations,
-                "error": dict(zip(CHANNELS, o.error.tolist(), strict=True)),
+                "error": dict(zip(c.rig.channels, o.error.tolist(), strict=True)),
             }
             for o in c.outliers
         ],
@@ -83,6 +88,8 @@ def to_dict(c: Calibrated, proposals: Sequence[Proposal]) -> dict[str, Any]:
             "poses": len(c.rig.validation),
             "attitude_rms_before": before,
             "attitude_rms_after": after,
+            "distance_rms_before": c.validation.distance[0],
+            "distance_rms_after": c.validation.distance[1],
         },
         "measure_next": [
             {

@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from sms.arrays import Array
+from sms.calibration.schema import PosesFile, TolerancesTable
 from sms.errors import InputError, did_you_mean
+from sms.io.schema import checked, parse_toml, read_text
 from sms.io.units import array_to_si, split_column_name, to_si
 
 CHANNELS = {"roll": "rad", "pitch": "rad", "height": "m", "yaw": "rad", "x": "m", "y": "m"}
-"""What may be measured of a pose, with its unit, in the order of the core."""
+"""What may be measured of a pose, with its unit, in the order of the core; behind them come distances."""
+DISTANCE = "distance_"
+"""What a distance's column is called, before its name."""
 EXTENSIONS = ("extension_1", "extension_2", "extension_3")
 TOLERANCES = {
-    "joint": ("m", 5e-3),
-    "length": ("m", 5e-3),
-    "sensor_gain": ("1", 5e-3),
-    "extension_zero": ("m", 1e-3),
-    "attitude_zero": ("rad", 2e-3),
+    "joint": "m",
+    "length": "m",
+    "sensor_gain": "1",
+    "extension_zero": "m",
+    "attitude_zero": "rad",
 }
-"""Half widths of what the drawing says, two standard deviations: unit and default."""
+"""What the drawing says half widths of, with the unit; defaults are TolerancesTable's."""
 LEAST_POSES = 6
 KEPT_ASIDE = 5
 """Every so many poses one is a validation pose, where no file of them is named."""
@@ -34,7 +36,8 @@ KEPT_ASIDE = 5
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Poses as read: extension (n, 3) m; pose (n, 6) rad and m, NaN where not measured; row (n,) of the file."""
+    """Poses as read: extension (n, 3) m; pose (n, 6 + distances) rad and m, NaN where not measured; row (n,) of its
+    file."""
 
     extension: Array
     pose: Array
@@ -48,6 +51,16 @@ class Poses:
 
 
 @dataclass(frozen=True, eq=False)
+class Distance:
+    """Between a mark on the ground and one on the platform, in world axes with the platform at rest, m."""
+
+    name: str
+    ground: Array  #: (3,)
+    platform: Array  #: (3,)
+    noise: float  #: standard deviation of a reading, and of what is not known of the marks
+
+
+@dataclass(frozen=True, eq=False)
 class PosesRig:
     """What a calibration is made from, SI."""
 
@@ -57,35 +70,39 @@ class PosesRig:
     fitted: Poses
     validation: Poses
     extension_noise: Array  #: (3,) standard deviations
-    pose_noise: Array  #: (6,)
+    pose_noise: Array  #: (6 + distances,)
     tolerances: Mapping[str, float]  #: half widths, by the names of TOLERANCES
+    distances: tuple[Distance, ...] = ()
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the columns of a pose."""
+        return (*CHANNELS, *(DISTANCE + d.name for d in self.distances))
 
 
 def load_poses(path: Path) -> PosesRig:
     """Read the rig file and its poses. InputError with file, key and remedy for what cannot be used."""
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise InputError(f"{path}: cannot be read ({problem.strerror}); name a rig file") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
-        raise InputError(f"{path}: not TOML ({problem}); correct that line") from None
-    _known(content, ("rig", "noise", "tolerances"), f"{path}")
-    rig = _table(content, "rig", path)
-    _known(rig, ("name", "kind", "poses", "validation"), f"{path}, [rig]")
-    if rig.get("kind") != "poses":
+    content = parse_toml(read_text(path, "rig file", "[rig] and [noise]"), path)
+    kind = content["rig"].get("kind") if isinstance(content.get("rig"), dict) else None
+    if isinstance(kind, str) and kind != "poses":
         raise InputError(
-            f"{path}, [rig] kind: '{rig.get('kind')}' holds no poses; sms calibrate geometry reads kind 'poses'"
+            f"{path}, [rig] kind: '{kind}' holds no poses; sms calibrate geometry reads kind 'poses'"
         )
-    if "poses" not in rig:
-        raise InputError(
-            f'{path}, [rig]: the file of the poses is missing; write poses = "poses.csv"'
+    said = checked(PosesFile, content, path)
+    distances = tuple(
+        Distance(
+            name,
+            *(_point(place, f"{path}, [distances.{name}]") for place in (d.ground, d.platform)),
+            _positive(d.noise, "m", f"{path}, [distances.{name}] noise"),
         )
-    file = path.parent / str(rig["poses"])
-    poses = _read(file)
+        for name, d in said.distances.items()
+    )
+    file = path.parent / said.rig.poses
+    poses = _read(file, distances)
     files = [path, file]
-    if "validation" in rig:
-        other = path.parent / str(rig["validation"])
-        fitted, kept = poses, _read(other)
+    if said.rig.validation is not None:
+        other = path.parent / said.rig.validation
+        fitted, kept = poses, _read(other, distances)
         files.append(other)
     else:
         aside = np.arange(len(poses)) % KEPT_ASIDE == KEPT_ASIDE - 1
@@ -94,29 +111,51 @@ def load_poses(path: Path) -> PosesRig:
         raise InputError(
             f"{file}: {len(fitted)} poses to fit; measure at least {LEAST_POSES}, better 30"
         )
-    noise = _table(content, "noise", path)
-    _known(noise, ("extension", *CHANNELS), f"{path}, [noise]")
-    pose_noise = np.ones(6)
+    pose_noise = np.array([1.0] * len(CHANNELS) + [d.noise for d in distances])
     both = np.vstack([fitted.pose, kept.pose])
     for k, (channel, unit) in enumerate(CHANNELS.items()):
-        if np.isfinite(both[:, k]).any():
-            pose_noise[k] = _positive(noise, channel, unit, f"{path}, [noise]")
-    extension = _positive(noise, "extension", "m", f"{path}, [noise]")
-    declared = content.get("tolerances", {})
-    _known(declared, tuple(TOLERANCES), f"{path}, [tolerances]")
-    tolerances = {
-        name: _positive(declared, name, unit, f"{path}, [tolerances]")
-        if name in declared
-        else default
-        for name, (unit, default) in TOLERANCES.items()
-    }
-    title = str(rig.get("name", path.stem))
+        declared = getattr(said.noise, channel)
+        if not np.isfinite(both[:, k]).any():
+            continue
+        if declared is None:
+            raise InputError(
+                f"{path}, [noise]: {channel} is missing; declare its standard deviation"
+            )
+        pose_noise[k] = _positive(declared, unit, f"{path}, [noise] {channel}")
     return PosesRig(
-        title, path, tuple(files), fitted, kept, np.full(3, extension), pose_noise, tolerances
+        said.rig.name or path.stem,
+        path,
+        tuple(files),
+        fitted,
+        kept,
+        np.full(3, _positive(said.noise.extension, "m", f"{path}, [noise] extension")),
+        pose_noise,
+        {
+            name: _positive(getattr(said.tolerances, name), unit, f"{path}, [tolerances] {name}")
+            for name, unit in TOLERANCES.items()
+        },
+        distances,
     )
 
 
-def _read(file: Path) -> Poses:
+def default_tolerances() -> dict[str, float]:
+    """Half widths where a file says nothing else, SI."""
+    usual = TolerancesTable()
+    return {n: to_si(getattr(usual, n), unit, n) for n, unit in TOLERANCES.items()}
+
+
+def _point(place: Sequence[str | float], where: str) -> Array:
+    return np.array([to_si(value, "m", where) for value in place])
+
+
+def _positive(said: str | float, unit: str, where: str) -> float:
+    value = to_si(said, unit, where)
+    if not 0.0 < value < np.inf:
+        raise InputError(f"{where}: {said} is not above zero")
+    return value
+
+
+def _read(file: Path, distances: Sequence[Distance]) -> Poses:
     try:
         cells = pd.read_csv(file, comment="#")
     except OSError as problem:
@@ -125,12 +164,15 @@ def _read(file: Path) -> Poses:
         ) from None
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as problem:
         raise InputError(f"{file}: no table of poses ({problem})") from None
-    units = dict.fromkeys(EXTENSIONS, "m") | CHANNELS
+    channels = CHANNELS | {DISTANCE + d.name: "m" for d in distances}
+    units = dict.fromkeys(EXTENSIONS, "m") | channels
     columns: dict[str, Array] = {}
     for header in map(str, cells.columns):
         name, unit = split_column_name(header)
         if name not in units:
-            raise InputError(f"{file}: column '{header}' is not known; {did_you_mean(name, units)}")
+            declare = f"; declare its marks in [distances.{name.removeprefix(DISTANCE)}]"
+            remedy = declare if name.startswith(DISTANCE) else f"; {did_you_mean(name, units)}"
+            raise InputError(f"{file}: column '{header}' is not known{remedy}")
         if unit is None:
             raise InputError(
                 f"{file}: column '{header}' has no unit; write '{name} [{_USUAL[units[name]]}]'"
@@ -148,40 +190,14 @@ def _read(file: Path) -> Poses:
                 f"{file}: {name} is missing in a pose; every pose needs all three extensions"
             )
     absent = np.full(len(cells), np.nan)
-    pose = np.column_stack([columns.get(name, absent) for name in CHANNELS])
+    pose = np.column_stack([columns.get(name, absent) for name in channels])
     empty = np.flatnonzero(~np.isfinite(pose).any(axis=1))
     if empty.size:
         raise InputError(
-            f"{file}: pose {empty[0] + 1} has no roll, pitch, height, yaw, x or y; delete it"
+            f"{file}: pose {empty[0] + 1} has no roll, pitch, height, yaw, x, y or distance; delete it"
         )
     extension = np.column_stack([columns[name] for name in EXTENSIONS])
     return Poses(extension, pose, np.arange(1, len(cells) + 1))
 
 
 _USUAL = {"m": "mm", "rad": "deg"}
-
-
-def _table(content: Mapping[str, Any], name: str, path: Path) -> Mapping[str, Any]:
-    table = content.get(name)
-    if not isinstance(table, dict):
-        raise InputError(
-            f"{path}: the table [{name}] is missing; docs/calibration.md shows a whole file"
-        )
-    return table
-
-
-def _known(table: Any, names: tuple[str, ...], where: str) -> None:
-    if not isinstance(table, dict):
-        raise InputError(f"{where}: not a table; docs/calibration.md shows a whole file")
-    for name in table:
-        if name not in names:
-            raise InputError(f"{where}: '{name}' is not known; {did_you_mean(name, names)}")
-
-
-def _positive(table: Mapping[str, Any], name: str, unit: str, where: str) -> float:
-    if name not in table:
-        raise InputError(f"{where}: {name} is missing; declare its standard deviation")
-    value = to_si(table[name], unit, f"{where} {name}")
-    if not 0.0 < value < np.inf:
-        raise InputError(f"{where} {name}: {table[name]} is not above zero")
-    return value

@@ -19,12 +19,14 @@ def register(app: typer.Typer) -> None:
 
 
 def schema(
-    subject: Annotated[str, typer.Argument(help="rig or scenario.")],
+    subject: Annotated[
+        str, typer.Argument(help="rig, scenario or poses (a rig file of `sms calibrate geometry`).")
+    ],
     out: Annotated[
         Path | None, typer.Option(help="The file; without it the schema is printed.")
     ] = None,
 ) -> None:
-    """The JSON schema of rig files or of scenarios, for editors and other programs."""
+    """The JSON schema of rig files, of scenarios or of rig files of poses, for editors and other programs."""
     from sms.io.write import write_text_atomically  # noqa: PLC0415 (pandas takes its time)
     from sms.schemas import SUBJECTS, shipped  # noqa: PLC0415
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.calibration.fit import COVERAGE, Calibrated, Found, problem_of
+from sms.calibration.rig import CHANNELS
 from sms.report.markup import esc, section, table
 from sms.report.panels import Colour, figure, panel, panels_page, space_view, trace, view
 
@@ -21,7 +22,6 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
     """The whole page as text."""
     rig = calibrated.rig
     measured = rig.fitted.pose
-    number = rig.fitted.row.astype(np.float64)
     before, after = (
         _strokes(measured, e) for e in (calibrated.errors_before, calibrated.errors_after)
     )
@@ -34,13 +34,7 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
             trace(after[0], after[1], "after", "extended"),
         ])],
     )  # fmt: skip
-    errors = view(
-        "", "pose",
-        [panel(f"{name} [deg]", [
-            trace(number, np.degrees(calibrated.errors_before[:, k]), "before", "baseline", "markers"),
-            trace(number, np.degrees(calibrated.errors_after[:, k]), "after", "extended", "markers"),
-        ]) for k, name in enumerate(("roll", "pitch"))],
-    )  # fmt: skip
+    errors = _errors(calibrated)
     items = "".join(f"<li>{esc(text)}</li>" for text in said)
     values = table(
         "Every parameter, with its interval of 95 %",
@@ -73,6 +67,34 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
     )
     figures = {"plane": [space, plane], "errors": [errors]}
     return panels_page(f"Calibration: {rig.title}", body, figures)
+
+
+def _errors(calibrated: Calibrated) -> dict[str, Any]:
+    """Over the number of each pose: a panel for each angle and, where there are distances, one for all of them."""
+    rig, number = calibrated.rig, calibrated.rig.fitted.row.astype(np.float64)
+    shown = [("roll [deg]", [0], np.degrees(1.0)), ("pitch [deg]", [1], np.degrees(1.0))]
+    if rig.distances:
+        behind = list(range(len(CHANNELS), len(rig.channels)))
+        shown.append(("distances [mm]", behind, 1e3))
+    both: tuple[tuple[str, Colour, Array], ...] = (
+        ("before", "baseline", calibrated.errors_before),
+        ("after", "extended", calibrated.errors_after),
+    )
+    panels = []
+    for first, (label, columns, scale) in enumerate(shown):
+        traces = [
+            trace(
+                np.repeat(number, len(columns)),
+                scale * errors[:, columns].ravel(),
+                name,
+                colour,
+                "markers",
+                quiet=first > 0,
+            )
+            for name, colour, errors in both
+        ]
+        panels.append(panel(label, traces))
+    return view("", "pose", panels)
 
 
 def _space(calibrated: Calibrated) -> dict[str, Any]:

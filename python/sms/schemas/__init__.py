@@ -1,6 +1,7 @@
-"""JSON schemas of rig files and scenarios, made from the models that check them, for editors that complete and check.
+"""JSON schemas of rig files, of scenarios and of rig files of poses, for editors that complete and check.
 
-The shipped files are what `made` gives of today's models; `./dev docs` writes them anew.
+They are made from the models that check the files. The shipped files are what `made` gives of today's models;
+`./dev docs` writes them anew.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import json
 from importlib import resources
 from typing import Any, Literal, get_args
 
-Subject = Literal["rig", "scenario"]
+Subject = Literal["rig", "scenario", "poses"]
 SUBJECTS: tuple[Subject, ...] = get_args(Subject)
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _QUANTITY = {"type": ["string", "number"]}
@@ -22,8 +23,12 @@ def shipped(subject: Subject) -> str:
 
 def made(subject: Subject) -> str:
     """The text of the schema that the models of this version make."""
-    schema = _rig() if subject == "rig" else _scenario()
-    title = {"rig": "sms rig file", "scenario": "sms scenario"}[subject]
+    schema = {"rig": _rig, "scenario": _scenario, "poses": _poses}[subject]()
+    title = {
+        "rig": "sms rig file",
+        "scenario": "sms scenario",
+        "poses": "sms rig file of poses",
+    }[subject]
     return (
         json.dumps({"$schema": _DIALECT, **schema, "title": title}, indent=1, ensure_ascii=False)
         + "\n"
@@ -81,6 +86,12 @@ def _scenario() -> dict[str, Any]:
         "additionalProperties": False,
     }
     return schema
+
+
+def _poses() -> dict[str, Any]:
+    from sms.calibration.schema import PosesFile  # noqa: PLC0415
+
+    return PosesFile.model_json_schema()
 
 
 def _parameters(table: Any, of_each: dict[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,69 @@
+"""The structure of a rig file of kind "poses"."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from sms.io.schema import Table, TextOrNumber
+
+
+class MeasuredTable(Table):
+    """[rig]: what was measured."""
+
+    kind: Literal["poses"]
+    name: str = ""
+    poses: str
+    """CSV file, one row a pose, a unit in every header."""
+    validation: str | None = None
+    """CSV file of the poses on which the result is judged; without it every fifth pose is one."""
+
+
+class NoiseTable(Table):
+    """[noise]: standard deviations of what is read, for each column that the poses have."""
+
+    extension: TextOrNumber
+    roll: TextOrNumber | None = None
+    pitch: TextOrNumber | None = None
+    height: TextOrNumber | None = None
+    yaw: TextOrNumber | None = None
+    x: TextOrNumber | None = None
+    y: TextOrNumber | None = None
+
+
+class TolerancesTable(Table):
+    """[tolerances]: half widths on the drawing, two standard deviations."""
+
+    joint: TextOrNumber = "5 mm"
+    """Each coordinate of each joint."""
+    length: TextOrNumber = "5 mm"
+    """Link, less the distance of its joints at rest."""
+    sensor_gain: TextOrNumber = 0.005
+    extension_zero: TextOrNumber = "1 mm"
+    attitude_zero: TextOrNumber = "2 mrad"
+
+
+Place = Annotated[list[TextOrNumber], Field(min_length=3, max_length=3)]
+
+
+class DistanceTable(Table):
+    """[distances.NAME]: what the column distance_NAME is. Places are x, y and z in the axes of the joints, with the
+    platform at rest.
+    """
+
+    ground: Place
+    """Of the mark on the ground."""
+    platform: Place
+    """Of the mark on the platform."""
+    noise: TextOrNumber
+    """Standard deviation of a reading, and of what is not known of the marks."""
+
+
+class PosesFile(Table):
+    """The whole file."""
+
+    rig: MeasuredTable
+    noise: NoiseTable
+    tolerances: TolerancesTable = TolerancesTable()
+    distances: dict[str, DistanceTable] = Field(default_factory=dict)
