@@ -47,7 +47,7 @@ def propose(calibrated: Calibrated, count: int = NEXT) -> tuple[Proposal, ...]:
     rig = calibrated.rig
     q, extension = candidates(calibrated)
     measured = np.isfinite(rig.fitted.pose).any(axis=0)
-    readings = np.where(measured, 0.0, np.nan) * np.ones((len(q), len(measured)))
+    readings = np.where(measured, 0.0, np.nan) * np.ones((len(q), len(rig.channels)))
     problem = problem_of(Poses(extension, readings, np.arange(len(q))), rig, calibrated.params)
     prior = np.array([f.unknown.deviation for f in calibrated.found])
     names = [f.unknown.name for f in calibrated.found]

@@ -92,7 +92,8 @@ def load_poses(path: Path) -> PosesRig:
     distances = tuple(
         Distance(
             name,
-            *(_point(place, f"{path}, [distances.{name}]") for place in (d.ground, d.platform)),
+            _point(d.ground, f"{path}, [distances.{name}] ground"),
+            _point(d.platform, f"{path}, [distances.{name}] platform"),
             _positive(d.noise, "m", f"{path}, [distances.{name}] noise"),
         )
         for name, d in said.distances.items()
