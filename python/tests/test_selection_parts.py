@@ -166,6 +166,10 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
         return "fits best at its end" if effect.parameters[0] in at_its_end else ""
 
     monkeypatch.setattr(stepwise, "implausible", implausible)
+    unsure: set[str] = set()
+    monkeypatch.setattr(
+        stepwise, "_may_be_nothing", lambda effect, *rest: effect.parameters[0] in unsure
+    )
 
     def found(name: str) -> list[Trial]:
         made = Trial(
@@ -197,6 +201,40 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     assert fewer is not None
     assert fewer.found == [mass]
     assert leak[0].reason == "in the final model fits best at its end"
+    at_its_end.clear()
+    unsure.add("leak")
+    fewer = without(3.9)
+    assert fewer is not None
+    assert fewer.found == [mass]
+    outcome = Outcome(cast(Any, None), [], [leak])  # alone it took what there was, however unsure
+    assert without(3.9) is None
+
+
+@pytest.mark.parametrize(
+    ("off", "alike", "nothing"),
+    [
+        ((1.5, 0.0), 0.0, True),
+        ((2.6, 0.0), 0.0, False),
+        ((1.5, -1.5), 0.99, False),  # each may be nothing, both together not
+        ((1.5, 1.5), 0.99, True),
+    ],
+)
+def test_an_interval_that_holds_what_is_declared(
+    off: tuple[float, float], alike: float, nothing: bool
+) -> None:
+    """A tube's length and diameter are known as one combination; a conductance of 1.57 +- 0.21 beside it was 1.50."""
+    error = np.array([2.0, 3e-3])
+    covariance = np.outer(error, error) * np.array([[1.0, alike], [alike, 1.0]])
+    final = SimpleNamespace(
+        params={"length": 1.0 + off[0] * 2.0, "diameter": 0.009 + off[1] * 3e-3},
+        movable=["length", "diameter"],
+        standard_error=dict(zip(("length", "diameter"), error, strict=True)).get,
+        hypothesis=SimpleNamespace(free={"length": None, "diameter": None}),
+        covariance=covariance,
+    )
+    tube = cast(Any, SimpleNamespace(parameters=("length", "diameter")))
+    declared = cast(Any, {"length": 1.0, "diameter": 0.009})
+    assert stepwise._may_be_nothing(tube, cast(Any, final), declared) == nothing
 
 
 def test_who_leaves_least_is_carried_on_and_what_is_alike_to_it(

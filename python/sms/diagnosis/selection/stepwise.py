@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from scipy.stats import chi2
 
 from sms import _core
 from sms.arrays import Array
@@ -287,7 +288,9 @@ def without_untenable(
     outcome: Outcome, final: Fitted, baseline: Fitted, data: Data
 ) -> Outcome | None:
     """Without the first cause whose value in the final model is within what is declared of it, or at the end of what is
-    plausible: it is none, whatever it stood in for before the others came. None where each can stand.
+    plausible: it is none, whatever it stood in for before the others came. Of several causes none stands whose interval
+    has no effect in it: what another leaves, whose law is known only roughly, has been given its name. None where each
+    can stand.
     """
     h = baseline.hypothesis
     for members in outcome.found:
@@ -296,6 +299,8 @@ def without_untenable(
         reason = implausible(members[0].effect, final, data)
         if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
             reason = "within what is declared"
+        elif len(outcome.found) > 1 and _may_be_nothing(members[0].effect, final, h.start):
+            reason = "its interval of 95 % has no effect in it"
         if reason:
             for trial in members:
                 trial.accepted, trial.reason = False, f"in the final model {reason}"
@@ -306,6 +311,19 @@ def without_untenable(
             kept, current = _backward_elimination(kept, baseline, current, data)
             return Outcome(current, outcome.rounds, kept)
     return None
+
+
+def _may_be_nothing(effect: Effect, final: Fitted, declared: _core.Params) -> bool:
+    """Whether the joint 95 % interval of the effect's parameters, systematic errors counted, holds what is declared."""
+    names = [n for n in effect.parameters if n in final.movable and final.standard_error(n) > 0.0]
+    if not names:
+        return False
+    place = [list(final.hypothesis.free).index(n) for n in names]
+    off = np.array([final.params[n] - declared[n] for n in names])
+    deviation = np.array([final.standard_error(n) for n in names])
+    correlation = final.covariance[np.ix_(place, place)] / np.outer(deviation, deviation)
+    distance = off / deviation @ np.linalg.pinv(correlation, hermitian=True) @ (off / deviation)
+    return float(distance) < float(chi2.ppf(0.95, len(names)))
 
 
 def _with_these(
