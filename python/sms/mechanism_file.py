@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,17 +27,16 @@ def shipped() -> list[str]:
 
 def load_mechanism(path: str | os.PathLike[str]) -> Mechanism:
     """The mechanism of a file, or one that is shipped by its name. InputError names what is wrong where."""
+    from sms.io.schema import parse_toml, read_text  # noqa: PLC0415 (pydantic takes its time)
+
     file = Path(path)
-    if not file.exists() and str(path) in shipped():
+    if str(path) in shipped() and not file.exists():
         file = SHIPPED / f"{path}.toml"
-    try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as problem:
+    if not os.path.exists(file):  # noqa: PTH110 (False also for what no path can be)
         raise InputError(
-            f"{file}: cannot be read ({problem.strerror}); name a mechanism file, or one of {', '.join(shipped())}"
-        ) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
-        raise InputError(f"{file}: not TOML ({problem}); correct that line") from None
+            f"{file}: there is no such mechanism file; name one, or one of {', '.join(shipped())}"
+        )
+    content = parse_toml(read_text(file, "mechanism file", "[[leg]]"), file)
     for name in content:
         if name not in _TABLES:
             raise InputError(f"{file}: [{name}] is not known here; {did_you_mean(name, _TABLES)}")

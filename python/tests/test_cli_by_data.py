@@ -68,7 +68,7 @@ def test_path_finds_the_singular_pose_and_the_leg(tmp_path: Path) -> None:
         (("fk", *OF, "--length", "1"), "3 legs are actuated, 1 lengths given"),
         (("fk", *OF, "--length", "1", "--length", "nan", "--length", "1"), "finite"),
         (("workspace", *OF, "--set", "payload_mass=280"), "--set"),
-        (("workspace", "--mechanism", "no.toml"), "cannot be read"),
+        (("workspace", "--mechanism", "no.toml"), "there is no such mechanism file"),
         (("path", "poses.csv"), "--mechanism"),
         (("path", *OF, "no.csv"), "no such file"),
         (("path", *OF, "other.csv"), "no column is driven"),

@@ -162,7 +162,7 @@ def test_what_cannot_be_is_said() -> None:
         ("[0.8, 1.3] # least", "[1.3, 0.8] # least", "least length comes first"),
         ("[mechanism]", "[mechanisms]", "did you mean 'mechanism'"),
         ("[0.0, 0.5, 0.0]", "[0.1, 0.5, 0.0]", "symmetric"),
-        ("[mechanism]", "[mechanism", "not TOML"),
+        ("[mechanism]", "[mechanism", "not valid TOML"),
     ],
 )
 def test_a_wrong_file_is_refused_in_one_sentence(

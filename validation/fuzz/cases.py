@@ -11,7 +11,7 @@ import numpy as np
 
 from validation.fuzz.inputs import BASES, Base
 from validation.fuzz.mutated_tables import TABLES, as_matlab, as_parquet
-from validation.fuzz.mutated_text import spoil_log, spoil_toml, spoil_words
+from validation.fuzz.mutated_text import spoil_json, spoil_log, spoil_toml, spoil_words
 from validation.fuzz.mutations import Mutation, Random, pick, spoil_bytes, spoil_packing
 
 WEIGHTS = np.array([base.weight for base in BASES])
@@ -67,6 +67,8 @@ def _spoil(file: Path, folder: Path, random: Random) -> tuple[str, Path]:
     how: Mutation = spoil_bytes
     if file.suffix in (".toml", ".dbc"):
         how = spoil_toml if random.uniform() < 0.9 else spoil_bytes
+    elif file.suffix == ".json":
+        how = spoil_json if random.uniform() < 0.9 else spoil_bytes
     elif file.stem == "run" or file.suffix == ".asc":
         how = spoil_log if random.uniform() < 0.7 else spoil_bytes
     else:

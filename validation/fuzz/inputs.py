@@ -9,6 +9,7 @@ from __future__ import annotations
 import shutil
 from copy import copy
 from dataclasses import dataclass, replace
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +79,20 @@ BASES = (
     Base("logs", ("can", "record", "out/bus.asc", "--seconds", "0.2"), 0.2, (), 1.0),
     Base("logs", ("can", "rig", "--interface", "none", "--fault", "sensor_stuck:2@5s", "--effect",
                   "valve_leakage=2e-10", "--seed", "1"), 0.5, (), 1.0),
+    Base("poses", ("calibrate", "geometry", "poses.toml", *OUT), 2.0, ("poses.toml", "poses.csv")),
+    Base("poses", ("export", "c-params", "geometry.toml", "-o", "out/as_built.h"), 0.5, ("geometry.toml",)),
+    Base("poses", ("simulate", "platform.toml", "--set", "geometry.toml", *OUT), 0.5, ("geometry.toml",)),
+    Base("mechanism", ("ik", "--mechanism", "rps.toml", "--roll", "5", "--z", "1", "--deg"), 0.7, ("rps.toml",), 0.3),
+    Base("mechanism", ("fk", "--mechanism", "rps.toml", "--length", "1.02", "--length", "1.03", "--length", "1.0"),
+         0.7, ("rps.toml",), 0.3),
+    Base("mechanism", ("fk", "--mechanism", "hexapod.toml", *(w for _ in range(6) for w in ("--length", "1.2"))),
+         0.5, ("hexapod.toml",), 0.3),
+    Base("mechanism", ("workspace", "--mechanism", "rps.toml"), 0.3, ("rps.toml",)),
+    Base("mechanism", ("path", "--mechanism", "rps.toml", "path.csv", "--json"), 1.0, ("rps.toml", "path.csv")),
+    Base("bench", ("watch", "rig.toml", "--play", "record.csv", "--learn", "1", "--quiet", *OUT), 0.7,
+         ("rig.toml", "record.csv"), 0.3),
+    Base("answers", ("history", "out/h.sqlite", "--add", "one.json", "--add", "two.json", *OUT), 1.0, ("*.json",)),
+    Base("answers", ("compare-diagnoses", "one.json", "two.json", "--json", "out/c.json"), 0.7, ("*.json",)),
     Base("words", ("ik", "--roll", "5", "--pitch", "-2", "--height", "0.5", "--deg"), 1.0, (), 1.0),
     Base("words", ("fk", "--extension", "0.2", "0.21", "0.19", "--set", "stroke=0.4"), 1.0, (), 1.0),
     Base("words", ("workspace", "--set", "payload_mass=280", *OUT), 0.3, (), 1.0),
@@ -125,6 +140,28 @@ deviation = "4 N"
 [vary.supply_pressure]
 grid = ["4.5 bar", "5 bar"]
 """
+POSES = """\
+[rig]
+name = "drawn"
+kind = "poses"
+poses = "poses.csv"
+[noise]
+extension = "0.1 mm"
+roll = "0.02 deg"
+pitch = "0.02 deg"
+[tolerances]
+joint = "5 mm"
+[distances.tape]
+ground = ["0.1 m", "0 m", "0 m"]
+platform = ["0.1 m", "0 m", "-1.5 m"]
+noise = "1 m"
+"""
+GEOMETRY = """\
+[parameters]
+base_joint_1_x = { value = "1.3701 m", uncertainty = "1 mm" }
+actuator_length_offset_2 = { value = "-0.3 mm", uncertainty = "0.2 mm" }
+"sensor_gain_extension:2" = { value = 0.004, uncertainty = 1e-3 }
+"""
 OWN = """\
 legs = []
 
@@ -157,6 +194,10 @@ def write_inputs(root: Path) -> None:
     (root / "own" / "own.toml").write_text(OWN)
     _scenarios(root / "scenario")
     _logs(root)
+    _poses(root / "poses")
+    shutil.copy(root / "scenario" / "platform.toml", root / "poses")
+    _mechanisms(root / "mechanism")
+    _answers(root)
     (root / "words").mkdir()
 
 
@@ -208,6 +249,51 @@ def _scenarios(folder: Path) -> None:
         (folder / f"{name}.toml").write_text(text + motion)
     (folder / "sweep.toml").write_text(SWEEP)
     _deck(folder / "deck.csv")
+
+
+def _poses(folder: Path) -> None:
+    """Poses of the platform as drawn, with an inclinometer and a tape; and a geometry such as they bring."""
+    import sms  # noqa: PLC0415
+
+    folder.mkdir()
+    random = np.random.default_rng(SEED)
+    low = -sms.Params()["reference_point_z"]
+    q = random.uniform([-0.2, -0.2, low + 0.1], [0.2, 0.2, low + 0.3], (15, 3))
+    columns = {
+        f"extension_{leg} [mm]": 1e3 * column
+        for leg, column in enumerate(sms.inverse_kinematics(*q.T).extension.T, 1)
+    }
+    columns |= {"roll [deg]": np.degrees(q[:, 0]), "pitch [deg]": np.degrees(q[:, 1])}
+    pd.DataFrame(columns | {"distance_tape [m]": 1.5 + q[:, 2]}).to_csv(
+        folder / "poses.csv", index=False
+    )
+    (folder / "poses.toml").write_text(POSES)
+    (folder / "geometry.toml").write_text(GEOMETRY)
+
+
+def _mechanisms(folder: Path) -> None:
+    from sms import mechanisms  # noqa: PLC0415
+
+    folder.mkdir()
+    for name, shipped in (("rps", "three_rps"), ("hexapod", "dietmaier_hexapod")):
+        text = resources.files(mechanisms).joinpath(f"{shipped}.toml").read_text(encoding="utf-8")
+        (folder / f"{name}.toml").write_text(text)
+    turned = np.linspace(0.0, 10.0, 6)
+    pd.DataFrame({"z [mm]": 1000.0 + turned, "roll [deg]": turned}).to_csv(
+        folder / "path.csv", index=False
+    )
+
+
+def _answers(root: Path) -> None:
+    """Two diagnoses of the tank."""
+    from sms.diagnosis import diagnose  # noqa: PLC0415
+    from sms.diagnosis.result import as_json  # noqa: PLC0415
+
+    folder = root / "answers"
+    folder.mkdir()
+    text = as_json(diagnose(root / "tank" / "rig.toml"))
+    for name in ("one", "two"):
+        (folder / f"{name}.json").write_text(text)
 
 
 def _deck(file: Path) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import Any
 
 from validation.fuzz.mutations import NAMES, NUMBERS, UNITS, Random, pick
 
@@ -12,6 +14,23 @@ _WORD = re.compile(r"[A-Za-z_]\w{2,}")
 _QUOTED = re.compile(r'"[^"\n]*"')
 _UNIT = re.compile(r'(?<=\d )[A-Za-z^*/ \d]+(?=")')
 _OCTETS = re.compile(r"[0-9A-Fa-f]{2,}")
+_JSON: tuple[Any, ...] = (
+    None,
+    True,
+    "",
+    "x" * 300,
+    "[/red]",
+    "\ud800",
+    -1,
+    0,
+    1e308,
+    1e-320,
+    10**400,
+    [],
+    {},
+    [[]],
+    {"a": None},
+)
 OUTPUTS = ("--out", "-o", "--output", "--json", "--record", "record")
 """After these comes what is written."""
 OPTIONS = (
@@ -35,6 +54,38 @@ def _misspelt(word: str, random: Random) -> str:
         (word[:i] + word[i + 1 :], word[:i] + word[i:i] + word[i:], word.upper(), word + "_9"),
         random,
     )
+
+
+def spoil_json(content: bytes, random: Random) -> bytes:
+    """One value of it lost, doubled, of another kind or another size; or its text as that of a TOML file."""
+    try:
+        tree = json.loads(content)
+    except ValueError:
+        return spoil_toml(content, random)
+    if random.uniform() < 0.1:
+        return spoil_toml(content, random)
+    places = list(_places(tree))
+    if not places:
+        return json.dumps(pick(_JSON, random)).encode()
+    holder, key = pick(places, random)
+    how = int(random.integers(4))
+    if how == 0:
+        del holder[key]
+    elif how == 1 and isinstance(holder, list):
+        holder.append(holder[key])
+    elif how == 2 and isinstance(holder[key], float):
+        holder[key] *= float(pick((-1.0, 1e3, 1e300, float("nan"), float("inf")), random))
+    else:
+        holder[key] = pick(_JSON, random)
+    return json.dumps(tree).encode()
+
+
+def _places(tree: Any) -> Iterator[tuple[Any, Any]]:
+    """Every holder and key of a value, at any depth."""
+    keys = tree if isinstance(tree, dict) else range(len(tree)) if isinstance(tree, list) else ()
+    for key in keys:
+        yield tree, key
+        yield from _places(tree[key])
 
 
 def _quoted(word: str) -> str:

@@ -161,8 +161,10 @@ def path(
         print(
             f"largest condition number of the {len(wanted)} poses: {condition[worst]:.4g}, line {lines[worst]}"
         )
-        print("the path can be driven" if content["drivable"] else "the path cannot be driven")
+        if content["drivable"]:
+            print("the path can be driven")
     if not content["drivable"]:
+        print(f"sms: {poses}: the path cannot be driven", file=sys.stderr)
         raise typer.Exit(NOT_DRIVABLE)
 
 
