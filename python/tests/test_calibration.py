@@ -284,6 +284,9 @@ def test_a_simulation_takes_the_file_each_leg_by_itself(tmp_path: Path) -> None:
         assert isinstance(params, LegParams)
         gains = [leg["sensor_gain_extension"] for leg in params.legs]
         assert gains == [0.0, 0.004, 0.0]
+        said = CliRunner().invoke(app, ["simulate", str(scenario), "--out", str(tmp_path / "run")])
+        assert said.exit_code == 0, said.output
+        assert "parameter sensor gain extension:2" in (tmp_path / "run" / "report.html").read_text()
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def spoil_columns(content: bytes, random: Random) -> bytes:
             del row[i]
         elif how == 2:
             row.insert(j, row[i])
-        elif how == 3 and row is not head:
+        elif how == 3 and row is not head and len(rows[0]) == len(head):
             row[i] = rows[0][i]
     if how == 4:
         head[i] = pick(NAMES, random)

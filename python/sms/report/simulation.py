@@ -8,7 +8,7 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array
-from sms.parameters import PARAMETERS
+from sms.parameters import LEG_PARAMETERS
 from sms.report.markup import esc, section, table
 from sms.report.page import asset, page, plots
 from sms.report.plots import Figure, Line, figures_html, payload
@@ -174,7 +174,7 @@ def _setup(scenario: Scenario, command: Command) -> str:
         ("tolerance", f"{model.tolerance:g} a step, controller every {1e3 * scenario.period:g} ms"),
     ]
     rows += [
-        (f"parameter {words(name)}", format_quantity(value, PARAMETERS[name].unit, name))
+        (f"parameter {words(name)}", format_quantity(value, LEG_PARAMETERS[name].unit, name))
         for name, value in scenario.changed.items()
     ]
     cells = [[esc(name), esc(text)] for name, text in rows]
