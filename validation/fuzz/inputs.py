@@ -89,7 +89,7 @@ BASES = (
          0.5, ("hexapod.toml",), 0.3),
     Base("mechanism", ("workspace", "--mechanism", "rps.toml"), 0.3, ("rps.toml",)),
     Base("mechanism", ("path", "--mechanism", "rps.toml", "path.csv", "--json"), 1.0, ("rps.toml", "path.csv")),
-    Base("bench", ("watch", "rig.toml", "--play", "record.csv", "--learn", "1", "--quiet", *OUT), 0.7,
+    Base("bench", ("watch", "rig.toml", "--play", "record.csv", "--learn", "120", "--quiet", *OUT), 0.7,
          ("rig.toml", "record.csv"), 0.3),
     Base("answers", ("history", "out/h.sqlite", "--add", "one.json", "--add", "two.json", *OUT), 1.0, ("*.json",)),
     Base("answers", ("compare-diagnoses", "one.json", "two.json", "--json", "out/c.json"), 0.7, ("*.json",)),

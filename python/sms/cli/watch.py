@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
     from sms.watch.alarm_frame import AlarmFrame
     from sms.watch.feed import Chunk
     from sms.watch.watch import Status, Watch
+
+
+CANNOT_GO_ON = 1
+"""Exit code of a watch that began."""
 
 
 def register(app: typer.Typer) -> None:
@@ -119,7 +124,8 @@ def watch(
     guess of their size; after **--diagnose-after** seconds a full diagnosis runs on the recorded rows.
 
     Gaps, restarts of the clock, silence and bus faults are states, and no alarms. What happened stands in
-    *events.jsonl*, one JSON object a line.
+    *events.jsonl*, one JSON object a line. A watch that began and cannot go on, since the stream ended before the
+    healthy machine was learned or cannot be read, keeps what came in until then; its exit code is 1.
     """
     from sms.rigs.threads import one_thread_for_matrices, threads  # noqa: PLC0415
 
@@ -158,6 +164,9 @@ def watch(
                 beside.finish()
         except KeyboardInterrupt:
             stop()
+        except InputError as problem:
+            print(f"sms: {' '.join(str(problem).split())}", file=sys.stderr)
+            raise typer.Exit(CANNOT_GO_ON) from None
         _summary(console, beside)
 
 

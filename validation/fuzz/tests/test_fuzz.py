@@ -44,7 +44,7 @@ def test_some_spoilt_inputs_are_answered_or_refused() -> None:
 def test_a_case_can_be_repeated(tmp_path: Path) -> None:
     for base in BASES:
         (tmp_path / base.folder).mkdir(exist_ok=True)
-        for name in ("rig.toml", "record.csv", "run.asc", "bus.dbc"):
+        for name in ("rig.toml", "record.csv", "run.asc", "bus.dbc", "rps.toml", "poses.toml"):
             (tmp_path / base.folder / name).write_text('x = "1 m"\ny,z\n1,2\n' * 9)
     differ = 0
     for number in range(60):
