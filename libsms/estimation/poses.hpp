@@ -1,9 +1,10 @@
 // The mechanism as built, from measured poses.
 //
 // A pose is three readings of the actuators' position sensors and some of roll, pitch, height, yaw, x and y, and of
-// distances between marks on the ground and on the platform. The readings of the actuators go through the library's forward kinematics, whose last Newton step carries the derivatives (the
-// implicit function theorem on |l_i|^2 = L_i^2); what is left is the measured pose. Its covariance is that of the pose
-// sensors and, to first order, that of the position sensors through the same derivative:
+// distances between marks on the ground and on the platform. The readings of the actuators go through the library's
+// forward kinematics, whose last Newton step carries the derivatives (the implicit function theorem on |l_i|^2 = L_i^2);
+// what is left is the measured pose. Its covariance is that of the pose sensors and, to first order, that of the position
+// sensors through the same derivative:
 //
 //   Sigma = R + A diag(s_e^2) A^T,    A = d pose / d extension at the start
 //

@@ -39,9 +39,9 @@ inline int staged_place(const StagedWrites& staged, int index) {
   return place;
 }
 
-// As the transaction has it, or else as it is in effect; nullptr when there is no such index.
+// As the open transaction has it, or else as it is in effect; nullptr when there is no such index.
 inline const float* stored_parameter(ParameterStore& store, int index) {
-  const int place = store.open ? staged_place(store.staged, index) : int(store.staged.count);
+  const int place = staged_place(store.staged, index);
   return place < int(store.staged.count) ? &store.staged.value[place] : parameter(store.active, index);
 }
 
@@ -91,7 +91,9 @@ inline ParameterResult parameters_write(ParameterStore& store, WriteAccess acces
   }
   store.staged.index[place] = Word(index);
   store.staged.value[place] = value;
-  store.staged.count = Word(place < int(store.staged.count) ? int(store.staged.count) : place + 1);
+  if (place == int(store.staged.count)) {
+    ++store.staged.count;
+  }
   ++store.writes;
   return ParameterResult::ok;
 }
