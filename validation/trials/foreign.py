@@ -86,7 +86,8 @@ def foreign(
     if not sets:
         raise InputError(f"{folder}: there is no set with a rig.toml and a key in keys/")
     console, answers = Console(), []
-    os.environ.update(SMS_THREADS="1", OPENBLAS_NUM_THREADS="1")
+    cores = len(os.sched_getaffinity(0))
+    os.environ.update(SMS_THREADS=str(max(cores // workers, 1)), OPENBLAS_NUM_THREADS="1")
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         jobs = [pool.submit(answer_set, folder, name, reference) for name in sets]
         for job in as_completed(jobs):
