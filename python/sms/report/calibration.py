@@ -60,7 +60,11 @@ def calibration_html(calibrated: Calibrated, said: list[str]) -> str:
             "tall",
         )
         + figure(
-            "errors", "Measured less predicted", [errors], "Of the poses that were fitted.", "low"
+            "errors",
+            "Measured less predicted",
+            [errors],
+            "Of the poses that were fitted.",
+            "tall" if rig.distances else "low",
         )
         + section("parameters", "Parameters", values)
         + section("combinations", "What the poses tell and what not", combined)
