@@ -33,6 +33,7 @@ ELSEWHERE = {
     "python/sms/schemas/__init__.py": "a JSON schema, which says by $schema what it is",
     "python/sms/sweep/plan.py": "a digest",
     "python/sms/watch/page.py": "frames to a page",
+    "validation/fuzz/mutated_text.py": "what is spoilt on purpose",
 }
 
 
