@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 import sms
 from plant_support import write_bench, write_platform
-from sms._core import LegParams
+from sms._core import LegParams, PoseProblem
+from sms.arrays import Array
 from sms.calibration.fit import calibrate_poses, problem_of, unknowns
 from sms.calibration.proposal import END_MARGIN, propose
 from sms.calibration.result import geometry_file
@@ -59,13 +60,19 @@ def test_derivatives_are_those_of_the_residual(machine: Machine) -> None:
     names = [u.name for u in unknowns(rig)]
     _, jacobian = problem.evaluate(start, names)
     for k, name in enumerate(names):
-        step, low, high = 1e-5, start.copy(), start.copy()
-        low[name] -= step
-        high[name] += step
-        slope = (problem.evaluate(high)[0] - problem.evaluate(low)[0]) / (2 * step)
         assert jacobian[:, k] == pytest.approx(
-            slope, rel=1e-4, abs=1e-4 * (1 + np.abs(jacobian).max() * 1e-3)
+            _slope(problem, start, name, 1e-5),
+            rel=1e-4,
+            abs=1e-4 * (1 + np.abs(jacobian).max() * 1e-3),
         ), name
+
+
+def _slope(problem: PoseProblem, start: LegParams, name: str, step: float) -> Array:
+    """Central difference of the residual."""
+    low, high = start.copy(), start.copy()
+    low[name] -= step
+    high[name] += step
+    return (problem.evaluate(high)[0] - problem.evaluate(low)[0]) / (2 * step)
 
 
 def test_attitude_of_a_drawn_machine(machine: Machine) -> None:
@@ -190,11 +197,9 @@ def test_distances_have_the_derivatives_of_their_residual(machine: Machine) -> N
     names = [u.name for u in unknowns(rig)]
     _, jacobian = problem.evaluate(start, names)
     for k, name in enumerate(names):
-        step, low, high = 1e-6, start.copy(), start.copy()
-        low[name] -= step
-        high[name] += step
-        slope = (problem.evaluate(high)[0] - problem.evaluate(low)[0]) / (2 * step)
-        assert jacobian[:, k] == pytest.approx(slope, rel=1e-4, abs=1e-5 * np.abs(jacobian).max())
+        assert jacobian[:, k] == pytest.approx(
+            _slope(problem, start, name, 1e-6), rel=1e-4, abs=1e-5 * np.abs(jacobian).max()
+        ), name
 
 
 def test_distances_tell_the_scale(machine: Machine) -> None:

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from sms.arrays import Array
-from sms.calibration.schema import PosesFile, TolerancesTable
+from sms.calibration.schema import NoiseTable, PosesFile, TolerancesTable
 from sms.errors import InputError, did_you_mean
 from sms.io.schema import checked, parse_toml, read_text
 from sms.io.units import array_to_si, split_column_name, to_si
@@ -112,17 +112,6 @@ def load_poses(path: Path) -> PosesRig:
         raise InputError(
             f"{file}: {len(fitted)} poses to fit; measure at least {LEAST_POSES}, better 30"
         )
-    pose_noise = np.array([1.0] * len(CHANNELS) + [d.noise for d in distances])
-    both = np.vstack([fitted.pose, kept.pose])
-    for k, (channel, unit) in enumerate(CHANNELS.items()):
-        declared = getattr(said.noise, channel)
-        if not np.isfinite(both[:, k]).any():
-            continue
-        if declared is None:
-            raise InputError(
-                f"{path}, [noise]: {channel} is missing; declare its standard deviation"
-            )
-        pose_noise[k] = _positive(declared, unit, f"{path}, [noise] {channel}")
     return PosesRig(
         said.rig.name or path.stem,
         path,
@@ -130,13 +119,28 @@ def load_poses(path: Path) -> PosesRig:
         fitted,
         kept,
         np.full(3, _positive(said.noise.extension, "m", f"{path}, [noise] extension")),
-        pose_noise,
+        _noise_of(said.noise, np.vstack([fitted.pose, kept.pose]), distances, path),
         {
             name: _positive(getattr(said.tolerances, name), unit, f"{path}, [tolerances] {name}")
             for name, unit in TOLERANCES.items()
         },
         distances,
     )
+
+
+def _noise_of(said: NoiseTable, read: Array, distances: Sequence[Distance], path: Path) -> Array:
+    """(6 + distances,): of what is not read (poses, 6 + distances) it does not matter."""
+    noise = np.array([1.0] * len(CHANNELS) + [d.noise for d in distances])
+    for k, (channel, unit) in enumerate(CHANNELS.items()):
+        declared = getattr(said, channel)
+        if not np.isfinite(read[:, k]).any():
+            continue
+        if declared is None:
+            raise InputError(
+                f"{path}, [noise]: {channel} is missing; declare its standard deviation"
+            )
+        noise[k] = _positive(declared, unit, f"{path}, [noise] {channel}")
+    return noise
 
 
 def default_tolerances() -> dict[str, float]:

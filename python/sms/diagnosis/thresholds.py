@@ -91,6 +91,10 @@ SURE = 5.0
 """Standard errors, systematic errors counted, by which an effect is beyond what is declared of it that is named for
 taking most of what is left where that is within what is tolerated. Convention: five sigma.
 """
+JOINT_INTERVAL = 0.95
+"""Of a cause among several, systematic errors counted: the interval that must not hold what is declared. Convention: 95
+percent.
+"""
 DEPARTS = 1e-3
 """Chance from which on the numbers that are known lie too far from what is declared for a healthy machine, however
 little is left. Convention: 0.1 percent.

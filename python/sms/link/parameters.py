@@ -28,7 +28,7 @@ _RESULTS = {
     "moving": "the platform is not disabled; ask for the mode disabled first",
     "discarded": "the transaction was discarded; nothing was changed",
     "impossible_machine": "these parameters together are no machine; nothing was changed",
-    "too_many": "a transaction holds 128 parameters; nothing was changed, write them in two",
+    "too_many": "a transaction takes no more parameters; nothing was changed, write them in two parts",
 }
 #: What loss on the bus can bring about: the transaction is then begun again.
 _TRY_AGAIN = ("no_transaction", "wrong_count", "timed_out")

@@ -63,6 +63,7 @@ from sms.diagnosis.selection.score_test import ScoreTests
 from sms.diagnosis.thresholds import (
     ALIKE,
     CANDIDATE_STEPS,
+    JOINT_INTERVAL,
     LEAST_SHARE,
     MOST_CAUSES,
     NEARLY_ALL,
@@ -323,7 +324,7 @@ def _may_be_nothing(effect: Effect, final: Fitted, declared: _core.Params) -> bo
     deviation = np.array([final.standard_error(n) for n in names])
     correlation = final.covariance[np.ix_(place, place)] / np.outer(deviation, deviation)
     distance = off / deviation @ np.linalg.pinv(correlation, hermitian=True) @ (off / deviation)
-    return float(distance) < float(chi2.ppf(0.95, len(names)))
+    return float(distance) < float(chi2.ppf(JOINT_INTERVAL, len(names)))
 
 
 def _with_these(
