@@ -247,7 +247,7 @@ def test_distances_in_the_file(machine: Machine, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"declare its marks in \[distances\.laser\]"):
         load_poses(file)
     file.write_text(file.read_text().replace("'2.0 m', ", "", 1))
-    with pytest.raises(InputError, match=r"\[distances\] lasr\.ground"):
+    with pytest.raises(InputError, match=r"\[distances\] lasr\.ground: must be x, y and z"):
         load_poses(file)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from sms.io.schema import Table, TextOrNumber
 
@@ -44,7 +44,17 @@ class TolerancesTable(Table):
     attitude_zero: TextOrNumber = "2 mrad"
 
 
-Place = Annotated[list[TextOrNumber], Field(min_length=3, max_length=3)]
+def _x_y_z(value: list[str | float]) -> list[str | float]:
+    if len(value) != 3:
+        raise ValueError('must be x, y and z, like ["1.2 m", "0 m", "-0.1 m"]')
+    return value
+
+
+Place = Annotated[
+    list[TextOrNumber],
+    AfterValidator(_x_y_z),
+    Field(json_schema_extra={"minItems": 3, "maxItems": 3}),
+]
 
 
 class DistanceTable(Table):
