@@ -87,7 +87,13 @@ def _short_form(key: str) -> BeforeValidator:
 class Table(BaseModel):
     """A TOML table in which an unknown key is a mistake and nothing is silently converted."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        strict=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+    )
 
 
 class RigTable(Table):
