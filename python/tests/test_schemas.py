@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,32 @@ def test_what_is_shipped_is_what_the_models_make(subject: schemas.Subject) -> No
         "not current: ./dev docs regenerates it"
     )
     jsonschema.Draft202012Validator.check_schema(json.loads(schemas.shipped(subject)))
+
+
+def undescribed(table: Mapping[str, Any], schema: Mapping[str, Any]) -> Iterator[str]:
+    """Keys of a table, and of those written out inside of it, of which a schema says nothing."""
+
+    def described(entry: Mapping[str, Any]) -> bool:
+        if "description" in entry:
+            return True
+        if "$ref" in entry:
+            return described(schema["$defs"][entry["$ref"].rpartition("/")[2]])
+        parts = [*entry.get("anyOf", ()), *entry.get("oneOf", ())]
+        parts += [entry[key] for key in ("items", "additionalProperties") if key in entry]
+        return any(described(part) for part in parts if isinstance(part, Mapping))
+
+    for key, entry in table.get("properties", {}).items():
+        if not described(entry):
+            yield key
+        yield from (f"{key}.{inner}" for inner in undescribed(entry, schema))
+
+
+@pytest.mark.parametrize("subject", schemas.SUBJECTS)
+def test_every_key_is_described(subject: schemas.Subject) -> None:
+    schema = json.loads(schemas.shipped(subject))
+    tables = {"the file": schema, **schema["$defs"]}
+    missing = [f"{name} {key}" for name, of in tables.items() for key in undescribed(of, schema)]
+    assert not missing, f"a docstring is missing below {', '.join(missing)}"
 
 
 @pytest.mark.parametrize("path", RIGS, ids=lambda path: path.stem)

@@ -13,7 +13,9 @@ class MeasuredTable(Table):
     """[rig]: what was measured."""
 
     kind: Literal["poses"]
+    """What tells this file from other rig files."""
     name: str = ""
+    """Title of the report; without it, the file's name."""
     poses: str
     """CSV file, one row a pose, a unit in every header."""
     validation: str | None = None
@@ -24,12 +26,19 @@ class NoiseTable(Table):
     """[noise]: standard deviations of what is read, for each column that the poses have."""
 
     extension: TextOrNumber
+    """Of each position sensor, a length."""
     roll: TextOrNumber | None = None
+    """Of roll, an angle."""
     pitch: TextOrNumber | None = None
+    """Of pitch, an angle."""
     height: TextOrNumber | None = None
+    """Of the height of the platform's reference point, a length."""
     yaw: TextOrNumber | None = None
+    """Of yaw, an angle."""
     x: TextOrNumber | None = None
+    """Of x of the reference point, a length."""
     y: TextOrNumber | None = None
+    """Of y of the reference point, a length."""
 
 
 class TolerancesTable(Table):
@@ -40,8 +49,11 @@ class TolerancesTable(Table):
     length: TextOrNumber = "5 mm"
     """Link, less the distance of its joints at rest."""
     sensor_gain: TextOrNumber = 0.005
+    """Relative gain error of each position sensor."""
     extension_zero: TextOrNumber = "1 mm"
+    """Zero error of each position sensor, a length."""
     attitude_zero: TextOrNumber = "2 mrad"
+    """Zero error of the sensor of roll and of that of pitch, an angle."""
 
 
 def _x_y_z(value: list[str | float]) -> list[str | float]:

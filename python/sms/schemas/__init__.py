@@ -48,6 +48,7 @@ def _rig() -> dict[str, Any]:
     }
     known = dict.fromkeys(s for kind in KINDS.values() for s in kind.signals)
     schema["properties"]["signals"] = {
+        "description": schema["properties"]["signals"]["description"],
         "type": "object",
         "properties": {
             s: {
@@ -60,6 +61,7 @@ def _rig() -> dict[str, Any]:
     }
     legs = sorted({name.rpartition(":")[0] for name in LEG_PARAMETERS if is_of_leg(name)})
     schema["properties"]["parameters"] = {
+        "description": schema["properties"]["parameters"]["description"],
         "type": "object",
         "properties": _parameters(PARAMETERS, {"$ref": "#/$defs/Parameter"}),
         "patternProperties": {f"^({'|'.join(legs)}):[1-3]$": {"$ref": "#/$defs/Parameter"}},
@@ -81,6 +83,7 @@ def _scenario() -> dict[str, Any]:
         "oneOf": [{"$ref": f"#/$defs/{table.__name__}"} for table in EXCITATIONS.values()]
     }
     schema["properties"]["parameters"] = {
+        "description": schema["properties"]["parameters"]["description"],
         "type": "object",
         "properties": _parameters(PARAMETERS, _QUANTITY),
         "additionalProperties": False,
