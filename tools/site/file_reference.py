@@ -50,18 +50,36 @@ def _table(name: str, entry: Schema, schema: Schema, required: bool) -> Iterator
     if of.get("type") == "array":
         yield from title(f"[[{name}]]", "-")
         of = _resolved(of["items"], schema)
+    elif isinstance(of.get("additionalProperties"), dict):
+        yield from title(f"[{name}.NAME]", "-")
+        of = _resolved(of["additionalProperties"], schema)
     else:
         yield from title(f"[{name}]", "-")
     if required:
         yield from ("Required.", "")
     for variant in of.get("oneOf", (of,)):
         one = _resolved(variant, schema)
-        if "description" in one:
-            yield from (*restructured(_without_name(str(one["description"])).split("\n")), "")
+        yield from _text(one)
+        each = _of_each_name(one, schema)
+        if each:
+            yield from (*_text(each), *_list(each, schema), "")
         for key, value in one.get("properties", {}).items():
-            yield from _key(name, key, value, schema, key in one.get("required", ()))
+            yield from _key(key, value, schema, key in one.get("required", ()), each is None)
         for pattern in one.get("patternProperties", {}):
             yield from (f"Also, of one leg of the platform: ``{pattern}``.", "")
+
+
+def _of_each_name(of: Schema, schema: Schema) -> Schema | None:
+    """The table that stands behind every name of a table of names, [signals] or [parameters]."""
+    tables = [_resolved(entry, schema) for entry in of.get("properties", {}).values()]
+    alike = tables and "properties" in tables[0] and all(table is tables[0] for table in tables)
+    return tables[0] if alike else None
+
+
+def _text(of: Schema) -> Iterator[str]:
+    """What a table is, a paragraph."""
+    if "description" in of:
+        yield from (*restructured(_without_name(str(of["description"])).split("\n")), "")
 
 
 def _without_name(text: str) -> str:
@@ -70,23 +88,29 @@ def _without_name(text: str) -> str:
     return rest[:1].upper() + rest[1:] if colon and head.startswith("[") else text
 
 
-def _key(table: str, key: str, value: Schema, schema: Schema, required: bool) -> Iterator[str]:
+def _key(key: str, value: Schema, schema: Schema, required: bool, inside: bool) -> Iterator[str]:
+    """A key; inside: of a table, with those that it has."""
     yield from (
         f".. describe:: {key}",
         "",
         *indented([f"*{_kind(value, schema)}*" + _rest(value, required)]),
         "",
     )
-    if text := value.get("description", ""):
-        yield from (*indented(restructured(text.split("\n"))), "")
     of = _resolved(value, schema)
-    if "properties" in of and table not in ("signals", "parameters"):
-        for inner, entry in of["properties"].items():
-            told = f"``{inner}``: *{_kind(entry, schema)}*" + _rest(
-                entry, inner in of.get("required", ())
-            )
-            yield from (f"   - {told}",)
-        yield ""
+    if text := value.get("description") or of.get("description"):
+        yield from (*indented(restructured(text.split("\n"))), "")
+    if inside and "properties" in of:
+        yield from (*indented(list(_list(of, schema))), "")
+
+
+def _list(of: Schema, schema: Schema) -> Iterator[str]:
+    """The keys of a table that stands inside of another, a line each."""
+    for key, value in of["properties"].items():
+        told = f"- ``{key}``: *{_kind(value, schema)}*" + _rest(
+            value, key in of.get("required", ())
+        )
+        text = " ".join(value.get("description", "").split())
+        yield f"{told}. {escaped(text)}" if text else told
 
 
 def _rest(value: Schema, required: bool) -> str:
@@ -112,7 +136,11 @@ def _kind(value: Schema, schema: Schema) -> str:
         return _kind(of, schema) if "anyOf" in of or "enum" in of else "table"
     if "anyOf" in value:
         kinds = [_kind(v, schema) for v in value["anyOf"] if v.get("type") != "null"]
-        return " or ".join(dict.fromkeys(kinds))
+        return ("; or " if any("," in kind for kind in kinds) else " or ").join(
+            dict.fromkeys(kinds)
+        )
+    if "date" in value.get("format", ""):
+        return "date"
     kind = value.get("type", "any")
     if isinstance(kind, list):
         return "text with a unit, or number"
