@@ -1,5 +1,5 @@
-"""What the repository holds but nobody writes: two tables of its documentation, the frames of the bus, a stub, two
-schemas.
+"""What the repository holds but nobody writes: two tables of its documentation, the frames of the bus, a stub, and
+the schemas.
 
 `./dev docs` regenerates them; `python -m tools.generate --check` says whether that is due.
 """

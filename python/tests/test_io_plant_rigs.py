@@ -292,3 +292,24 @@ def test_a_rate_that_no_logger_has_is_said(tmp_path: Path, step: float, warned: 
         any("no logger has" in f.message and "scale = 0.909091" in f.remedy for f in found)
         is warned
     )
+
+
+def test_samples_that_are_skipped_reach_no_simulation(tmp_path: Path) -> None:
+    signals = bench_signals()
+    bad = signals["extension"].copy()
+    bad[:20] = np.nan
+    text = BENCH.replace('"test"', '"validate"') + "\n[data]\nskip_first = 20\n"
+    path = bench(tmp_path, text, extension=bad)
+    rig = load_rig(path)
+    found, record = first_record(path)
+    assert not [f for f in found if f.startswith("error")]
+    assert len(record) == len(bad) - 20
+    np.testing.assert_array_equal(record.signals["extension"], signals["extension"][20:])
+    assert record.finding("note", 0, "extension", "", "").line == 22
+    assert all(np.all(np.isfinite(r.signals["extension"])) for r in read_and_check(rig)[0])
+
+
+def test_skipping_all_of_a_record_is_refused(tmp_path: Path) -> None:
+    rig = load_rig(bench(tmp_path, BENCH + "\n[data]\nskip_first = 1200\n"))
+    with pytest.raises(InputError, match=r"one.csv: skip_first leaves none of its 1200 samples"):
+        load_record(rig, rig.records[0])

@@ -186,6 +186,7 @@ def test_nothing_and_nan_do_no_harm(verdict: Verdict) -> None:
 def test_text_cannot_become_markup() -> None:
     evil = "</script><script>alert(1)</script>"
     d = replace(diagnosis("combination"), title=evil, sentence=evil, rig=evil, conclusion=(evil,))
+    d = replace(d, notes=evil)
     d = replace(d, series=tuple(replace(s, record=evil) for s in d.series))
     page = Page(report_html(d))
     assert sum(tag == "script" for tag, _ in page.tags) == 3

@@ -299,6 +299,10 @@ BAD: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
         ("[model] tolerance: 0 ", "1e-12 to 0.01"),
     ),
     "height": ("[controller]", '[start]\nheight = "0.1 m"\n[controller]', ("[start] height: 0.1 m", "allowed range")),
+    "of another plant": (
+        "[controller]", '[start]\nload_force = "5 N"\n[controller]',
+        ("[start] load_force: of a bench, and the plant is a platform",),
+    ),
     "duration": ('"4 s"', '"-4 s"', ("[scenario] duration: -4 s", "above 0 to 86400 s")),
     "no motion": ("[excitation]", "[rig]\nfile = 'x'\n#", ()),
     "two motions": ("[controller]", "[sea]\nstate = 2.0\n[controller]", ("[excitation] and [sea] exclude",)),

@@ -113,6 +113,7 @@ def blank_answer(
     return Diagnosis(
         rig=rig.path.name,
         title=rig.title,
+        notes=rig.notes,
         findings=findings,
         records={r.name: r.role for r in records},
         seed=seed,

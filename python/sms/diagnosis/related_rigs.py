@@ -1,6 +1,6 @@
 """The causes of one rig looked up on its relatives: what stays when the seal, or only the mounting, changes?
 
-A rig file names others of the same bench under [[rig.related]], each with what differs there. The extended
+A rig file names others of the same bench under [[related]], each with what differs there. The extended
 model is fitted to all records of each, so that a parameter can be followed from rig to rig.
 """
 

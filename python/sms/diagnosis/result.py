@@ -247,6 +247,8 @@ class Diagnosis(Shown):
     """"stated", or "modification of the records"."""
     declared: dict[str, Any] = field(default_factory=dict)
     """What the rig file declares, SI: "model", "control", "signals", "parameters"."""
+    notes: str = ""
+    """Remarks of the rig file."""
     command: str = ""
     """Where the valve's command comes from, record or simulated controller, in plain words; empty without a valve."""
     verdict: Verdict = "no-evidence"

@@ -45,10 +45,10 @@ def flow_record(rig: Rig, source: RecordSource, record: Record) -> FlowRecord:
     known = "spool_position" in source.conditions or "spool_position" in rig.parameters
     return FlowRecord(
         name=source.name,
-        time=record.used(rig, "time"),
-        pressure=record.used(rig, "tank_pressure") + absolute("tank_pressure"),
-        supply=None if supply is None else supply[rig.skip_first :] + absolute("supply_pressure"),
-        temperature=record.used(rig, "tank_temperature")
+        time=record.used("time"),
+        pressure=record.used("tank_pressure") + absolute("tank_pressure"),
+        supply=None if supply is None else supply[record.skipped :] + absolute("supply_pressure"),
+        temperature=record.used("tank_temperature")
         if "tank_temperature" in record.signals
         else None,
         spool=condition("spool_position") if known else None,

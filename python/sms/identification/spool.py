@@ -188,15 +188,15 @@ def fit_position(rig: Rig, records: Sequence[Record], huber: float = 0.0) -> Pos
 
 
 def _run(rig: Rig, record: Record) -> SpoolRun:
-    time = record.used(rig, "time")
+    time = record.used("time")
     step = float((time[-1] - time[0]) / (time.size - 1))
     return SpoolRun(
         record.name,
         record.role,
         step,
         time,
-        record.used(rig, "valve_command"),
-        record.used(rig, "spool_position"),
+        record.used("valve_command"),
+        record.used("spool_position"),
     )
 
 

@@ -86,7 +86,7 @@ def _time_order(rig: Rig, record: Record) -> Iterator[Finding]:
     step = np.diff(time)
     for wrong, what in ((step < 0.0, "time runs backwards"), (step == 0.0, "time stands still")):
         remedy = "remove the line, or split the file where the clock was restarted"
-        for places, severity, said in _apart(rig, np.flatnonzero(wrong) + 1, "error", remedy):
+        for places, severity, said in _apart(record, np.flatnonzero(wrong) + 1, "error", remedy):
             first = int(places[0])
             more = f" (and {places.size - 1} times more)" if places.size > 1 else ""
             message = f"{what}, {time[first]:g} s after {time[first - 1]:g} s{more}"
@@ -94,10 +94,10 @@ def _time_order(rig: Rig, record: Record) -> Iterator[Finding]:
 
 
 def _apart(
-    rig: Rig, places: NDArray[np.intp], severity: Severity, remedy: str
+    record: Record, places: NDArray[np.intp], severity: Severity, remedy: str
 ) -> Iterator[tuple[NDArray[np.intp], Severity, str]]:
     """Split places into those that are used and those within skip_first, which are only noted."""
-    skipped = places < rig.skip_first
+    skipped = places < record.skipped
     if not np.all(skipped):
         yield places[~skipped], severity, remedy
     if np.any(skipped):
@@ -122,7 +122,7 @@ def _time_steps(rig: Rig, record: Record) -> Iterator[Finding]:
         )
     gaps = np.flatnonzero(step > GAP * median) + 1
     remedy = "the samples on both sides are used; see whether something was lost"
-    for places, severity, said in _apart(rig, gaps, "warning", remedy):
+    for places, severity, said in _apart(record, gaps, "warning", remedy):
         longest = int(places[np.argmax(step[places - 1])])
         what = "a gap" if places.size == 1 else f"{places.size} gaps, the longest one"
         message = (
@@ -145,14 +145,14 @@ def _runs(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 def _stuck(rig: Rig, record: Record) -> Iterator[Finding]:
     """A force or pressure that stays exactly constant over a long part while the rod moves."""
-    extension = record.used(rig, "extension")
+    extension = record.used("extension")
     motion = TRAVEL_SHARE * _range(extension)
     if motion == 0.0:
         return
     for signal in record.signals:
         if signal in ("time", "extension"):
             continue
-        values = record.used(rig, signal)
+        values = record.used(signal)
         starts, lengths = _runs(values)
         longest = int(np.argmax(lengths))
         start, length = int(starts[longest]), int(lengths[longest])
@@ -162,7 +162,7 @@ def _stuck(rig: Rig, record: Record) -> Iterator[Finding]:
             # A regulator with a coarse converter can hold a pressure; no seal holds a force.
             yield record.finding(
                 "warning" if is_pressure(signal) else "error",
-                start + rig.skip_first,
+                start + record.skipped,
                 signal,
                 f"constant for {length} samples ({100 * length / values.size:.0f} % of the record) "
                 "although the extension changes",
@@ -173,7 +173,7 @@ def _stuck(rig: Rig, record: Record) -> Iterator[Finding]:
 def _saturated(rig: Rig, record: Record) -> Iterator[Finding]:
     """A channel that sits at its own largest or smallest value for many samples in a row."""
     for signal in record.signals:
-        values = record.used(rig, signal)
+        values = record.used(signal)
         if signal == "time" or np.unique(values[np.isfinite(values)]).size < LEVELS:
             continue
         starts, lengths = _runs(values)
@@ -187,7 +187,7 @@ def _saturated(rig: Rig, record: Record) -> Iterator[Finding]:
             end_stop = signal == "extension"
             yield record.finding(
                 "note" if end_stop else "warning",
-                int(start) + rig.skip_first,
+                int(start) + record.skipped,
                 signal,
                 f"sits at its {name} value for {count} samples, {longest} in a row",
                 "an end stop does this; if it is none, check the sensor's range"
@@ -226,8 +226,8 @@ def _count_strokes(extension: Array) -> int:
 
 def _too_short(rig: Rig, record: Record) -> Iterator[Finding]:
     """Too few samples in motion or too few strokes to tell friction from anything else."""
-    extension = record.used(rig, "extension")
-    moving = _moving_samples(rig, record.used(rig, "time"), extension)
+    extension = record.used("extension")
+    moving = _moving_samples(rig, record.used("time"), extension)
     if moving < MOVING_SAMPLES:
         above = "" if rig.speed_above is None else f" faster than {1e3 * rig.speed_above:g} mm/s"
         yield record.finding(

@@ -28,7 +28,7 @@ def pressure_range(rig: Rig, record: Record) -> Iterator[Finding]:
     ambient = rig.declared("ambient_pressure").value
     for signal in filter(is_pressure, record.signals):
         gauge = signal in record.gauge
-        absolute = record.used(rig, signal) + (ambient if gauge else 0.0)
+        absolute = record.used(signal) + (ambient if gauge else 0.0)
         if absolute.size == 0 or np.all(np.isnan(absolute)):
             continue
         lowest = int(np.nanargmin(absolute))
@@ -50,7 +50,7 @@ def pressure_range(rig: Rig, record: Record) -> Iterator[Finding]:
         if np.nanmedian(absolute) < NO_AIR * ambient:
             severity, unit = "error", unit_of_pressure(rig, record, signal)
             remedy = remedy if unit is None else unit_remedy(rig, signal, unit)
-        yield record.finding(severity, lowest + rig.skip_first, signal, message, remedy)
+        yield record.finding(severity, lowest + record.skipped, signal, message, remedy)
 
 
 def usual_range(rig: Rig, record: Record) -> Iterator[Finding]:
@@ -61,7 +61,7 @@ def usual_range(rig: Rig, record: Record) -> Iterator[Finding]:
         if stem in ("time", "extension"):
             continue
         usual = SIGNALS[stem]
-        values = record.used(rig, signal)
+        values = record.used(signal)
         if signal in record.gauge:
             values = values + rig.declared("ambient_pressure").value
         low = -inf if is_pressure(signal) else usual.low
@@ -71,7 +71,7 @@ def usual_range(rig: Rig, record: Record) -> Iterator[Finding]:
         worst = int(np.nanargmax(beyond))
         yield record.finding(
             "error" if beyond[worst] > ABSURD * (usual.high - usual.low) else "warning",
-            worst + rig.skip_first,
+            worst + record.skipped,
             signal,
             f"{values[worst]:.4g} {usual.unit} lies outside what such a sensor usually reads, {usual.low:g} to "
             f"{usual.high:g} {usual.unit}",
@@ -82,7 +82,7 @@ def usual_range(rig: Rig, record: Record) -> Iterator[Finding]:
 def extension_range(rig: Rig, record: Record, signal: str = "extension") -> Iterator[Finding]:
     """The extension must lie within 0 to stroke, but for a zero that was set by hand."""
     stroke = rig.declared("stroke").value
-    extension = record.used(rig, signal)
+    extension = record.used(signal)
     if extension.size == 0 or np.all(np.isnan(extension)):
         return
     beyond = np.fmax(-extension, extension - stroke)
@@ -104,7 +104,7 @@ def extension_range(rig: Rig, record: Record, signal: str = "extension") -> Iter
     )
     yield record.finding(
         severity,
-        worst + rig.skip_first,
+        worst + record.skipped,
         signal,
         f"{1e3 * extension[worst]:.1f} mm lies outside 0 to {1e3 * stroke:g} mm (the stroke"
         f"{origin}) by {100 * share:.0f} %",
@@ -125,8 +125,8 @@ def force_against_pressure(rig: Rig, record: Record) -> Iterator[Finding]:
     area = 0.25 * pi * rig.declared("bore_diameter").value ** 2
     ambient_force = area * rig.declared("ambient_pressure").value
     gauge = "chamber_pressure_lower" in record.gauge
-    push = area * record.used(rig, "chamber_pressure_lower")
-    force = record.used(rig, "rod_force")
+    push = area * record.used("chamber_pressure_lower")
+    force = record.used("rod_force")
     if not np.any(np.isfinite(push) & np.isfinite(force)):
         return
     taken, other = (push, push - ambient_force) if gauge else (push - ambient_force, push)

@@ -7,7 +7,7 @@ or unit); what is wrong inside it is collected as findings, see check.py.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sms.errors import InputError, did_you_mean
 from sms.io.rig import RecordSource, Rig, Role
 from sms.io.signal_sources import SignalSource
-from sms.io.signals import SIGNAL_UNITS, without_leg
+from sms.io.signals import SIGNAL_UNITS, SIMULATED, without_leg
 from sms.io.table import Table
 from sms.io.table_files import is_can_log, read_table
 from sms.io.units import array_to_si, split_column_name
@@ -53,6 +53,7 @@ class Record:
     gauge: frozenset[str]  #: signals that were measured against ambient and still are
     findings: tuple[Finding, ...]  #: from reading; `check_record` adds to them
     lines: NDArray[np.int64]  #: (samples,) line of the file that each sample stands in
+    skipped: int = 0  #: samples at its start that are not used and still here
 
     @property
     def first_line(self) -> int:
@@ -63,9 +64,9 @@ class Record:
         """The number of samples."""
         return self.lines.size
 
-    def used(self, rig: Rig, signal: str) -> NDArray[np.float64]:
-        """A signal without the samples that the rig file skips at the start."""
-        return self.signals[signal][rig.skip_first :]
+    def used(self, signal: str) -> NDArray[np.float64]:
+        """A signal without the samples that are skipped at the start."""
+        return self.signals[signal][self.skipped :]
 
     def finding(
         self, severity: Severity, index: int | None, signal: str | None, message: str, remedy: str
@@ -78,9 +79,18 @@ class Record:
 def load_record(rig: Rig, source: RecordSource) -> Record:
     """Read one record of a rig into project signals in SI units.
 
-    Cells that are not numbers are NaN in the arrays and stand in `findings`; no sample is dropped.
+    Cells that are not numbers are NaN in the arrays and stand in `findings`. The samples that the rig file skips at the
+    start are dropped where all of a record is simulated; elsewhere they still serve for the speed at its first ones.
     """
-    return record_of(rig, source, _read(rig, source.file))
+    record = record_of(rig, source, _read(rig, source.file))
+    if rig.kind not in SIMULATED or not record.skipped:
+        return record
+    if record.skipped >= len(record):
+        raise InputError(
+            f"{source.file}: skip_first leaves none of its {len(record)} samples; lower it in {rig.path}, [data]"
+        )
+    signals = {name: values[record.skipped :] for name, values in record.signals.items()}
+    return replace(record, signals=signals, lines=record.lines[record.skipped :], skipped=0)
 
 
 def record_of(rig: Rig, source: RecordSource, table: Table) -> Record:
@@ -106,6 +116,7 @@ def record_of(rig: Rig, source: RecordSource, table: Table) -> Record:
         gauge=frozenset(s for s, wanted in rig.signals.items() if wanted.gauge and s in signals),
         findings=tuple(findings),
         lines=table.lines,
+        skipped=rig.skip_first,
     )
 
 

@@ -107,7 +107,7 @@ class RigTable(Table):
     title: str = ""
     """Title of the reports; without it, the file's name."""
     notes: str = ""
-    """Remarks; nothing is calculated from them."""
+    """Remarks, below the title of the report."""
     measured: Moment | None = None
     """When its records were measured; without it, when their files were changed last."""
     geometry: str | None = None
@@ -174,9 +174,7 @@ class DataTable(Table):
     dbc: str | None = None
     """DBC file that decodes CAN logs, relative to this file; without it, that of the project's own bus."""
     skip_first: int = Field(default=0, ge=0)
-    """Number of samples at the start of a record that the data check only notes, and that fits to a `cylinder`,
-    `flow_test` or `spool_test` leave out.
-    """
+    """Number of samples at the start of each record that are not used."""
     speed_above: TextOrNumber | None = None
     """Of a `cylinder`: the speed above which samples are compared; without it, whenever it moves."""
 

@@ -74,6 +74,9 @@ def label(signal: str) -> str:
     return words if without_leg(signal) == signal else f"{words} of leg {signal[-1]}"
 
 
+SIMULATED = ("tank", "bench", "platform")
+"""Kinds whose records are held against a simulation from the first sample on."""
+
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {
         # Without the upper chamber's pressure that chamber is taken as open to ambient.

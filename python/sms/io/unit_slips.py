@@ -81,7 +81,7 @@ def unit_of_time(rig: Rig, step: float) -> str:
 def unit_of_pressure(rig: Rig, record: Record, signal: str) -> str | None:
     """The unit in which the median reading is between half of ambient and 12 bar, or None."""
     ambient = rig.declared("ambient_pressure").value
-    middle = float(np.nanmedian(record.used(rig, signal)))
+    middle = float(np.nanmedian(record.used(signal)))
     gauge = ambient if signal in record.gauge else 0.0
     return likely_unit(rig, signal, PRESSURES, lambda f: 0.5 * ambient < f * middle + gauge < 1.2e6)
 

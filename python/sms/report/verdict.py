@@ -42,11 +42,12 @@ _NO_CARD: Mapping[Verdict, str] = {
 
 
 def header(diagnosis: Diagnosis) -> str:
-    """Title, verdict and conclusion."""
+    """Title, remarks, verdict and conclusion."""
     title = diagnosis.title or diagnosis.rig
+    notes = f'<p class="role">{esc(diagnosis.notes)}</p>' if diagnosis.notes else ""
     return (
         f'<div class="verdict"><p class="eyebrow">Diagnosis · {esc(diagnosis.rig)}</p>'
-        f"<h1>{esc(title)}</h1>"
+        f"<h1>{esc(title)}</h1>{notes}"
         f'<p class="chip {diagnosis.verdict}" data-verdict="{diagnosis.verdict}">'
         f"{VERDICT_WORDS[diagnosis.verdict]}</p>"
         f'<p class="sentence">{esc(diagnosis.sentence)}</p>{_symptoms(diagnosis)}</div>'

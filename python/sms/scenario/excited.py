@@ -113,7 +113,7 @@ def _amplitudes(scenario: Scenario, table: ExcitationTable, unit: str, width: in
 def _signal(
     scenario: Scenario, table: ExcitationTable, time: Array, amplitude: float, unit: str
 ) -> Array:
-    """The excitation from its delay on; before, what it has at its own time 0."""
+    """The excitation from its delay on; before, nothing."""
 
     def hertz(key: str, value: TextOrNumber) -> float:
         return within(value, "Hz", 0.0, HIGHEST_FREQUENCY, scenario.where("excitation", key))

@@ -92,6 +92,7 @@ def scenario_from(
     """As `load_scenario`, from the tables themselves; `path` is what errors name."""
     file = checked(ScenarioFile, tables, path)
     _check_one_motion(file, path)
+    _check_plant(file, path)
     changed = {**_rig_parameters(file, path), **_parameters(file, path), **(settings or {})}
     params = _machine(file.scenario.plant, changed, path)
     duration = file.scenario.duration
@@ -170,6 +171,28 @@ def find_file(name: str, path: Path, where: str) -> Path:
         f"{where}: there is no file '{name}' (looked in: {looked}); check the name, or set SMS_DATA "
         "to the folder that holds it"
     )
+
+
+PLANTS_WITH = {
+    ("start", "height"): ("platform",),
+    ("start", "extension"): ("bench",),
+    ("start", "load_force"): ("bench",),
+    ("model", "masses"): ("platform",),
+    ("model", "friction_law"): ("platform", "bench"),
+    ("model", "electronics"): ("platform", "bench"),
+}
+"""Keys that do not concern every plant."""
+
+
+def _check_plant(file: ScenarioFile, path: Path) -> None:
+    """InputError for a key that the plant has no use for: it would change nothing."""
+    for (table, key), plants in PLANTS_WITH.items():
+        given = key in getattr(file, table).model_fields_set
+        if given and file.scenario.plant not in plants:
+            raise InputError(
+                f"{path}, [{table}] {key}: of a {' or a '.join(plants)}, and the plant is a "
+                f"{file.scenario.plant}; leave it out, or correct [scenario] plant"
+            )
 
 
 def _check_one_motion(file: ScenarioFile, path: Path) -> None:
