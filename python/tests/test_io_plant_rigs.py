@@ -282,7 +282,8 @@ def test_more_samples_than_a_diagnosis_holds_are_refused(
 
 
 @pytest.mark.parametrize(
-    ("step", "warned"), [(0.005, False), (0.0055, True), (1.0 / 60.0, False), (0.011, True)]
+    ("step", "warned"),
+    [(0.005, False), (0.0055, True), (1.0 / 60.0, False), (0.011, True), (0.001, False)],
 )
 def test_a_rate_that_no_logger_has_is_said(tmp_path: Path, step: float, warned: bool) -> None:
     path = bench(tmp_path, time=step * np.arange(1200))

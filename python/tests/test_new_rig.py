@@ -116,6 +116,9 @@ def test_a_foreign_bench(tmp_path: Path) -> None:
     assert rig.signals["chamber_pressure_lower"].column == "pA [bara]"
     assert rig.signals["extension"].offset == pytest.approx(0.2)
     assert not any(source.gauge for source in rig.signals.values())
+    offset = ("--offset", "extension=200 mm", "--force")
+    said = written(tmp_path, "bench", *names, *offset, "--scale", "time=1.1")
+    assert "- run0.csv, time: one sample in" in said and "scale = 1 in [signals] time" in said
 
 
 @pytest.mark.full

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sms.arrays import Array
 from sms.diagnosis.remainder import FedEquations, Hidden, Remainder, Shape, Symptom, Unexplained
 from sms.io.json_files import json_text
+from sms.io.records import in_words
 from sms.views import Shown
 
 Verdict = Literal["no-evidence", "cause", "class", "combination", "unknown", "data-fault"]
@@ -179,6 +180,9 @@ class Finding:
     signal: str | None
     message: str
     remedy: str
+
+    def __str__(self) -> str:
+        return in_words(self.file, self.line, self.signal, self.message, self.remedy)
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,15 @@ from sms.io.units import array_to_si, split_column_name
 Severity = Literal["error", "warning", "note"]
 
 
+def in_words(
+    file: Path | str, line: int | None, signal: str | None, message: str, remedy: str
+) -> str:
+    """What a data check saw, in one sentence: "r.csv, line 3, extension: the cell is empty; repair or remove the line"."""
+    at = f", line {line}" if line is not None else ""
+    of = f", {signal}" if signal is not None else ""
+    return f"{file}{at}{of}: {message}; {remedy}"
+
+
 @dataclass(frozen=True)
 class Finding:
     """One thing that the data check saw: where, what, and what to do about it."""
@@ -37,9 +46,7 @@ class Finding:
     remedy: str
 
     def __str__(self) -> str:
-        line = f", line {self.line}" if self.line is not None else ""
-        signal = f", {self.signal}" if self.signal is not None else ""
-        return f"{self.file}{line}{signal}: {self.message}; {self.remedy}"
+        return in_words(self.file, self.line, self.signal, self.message, self.remedy)
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,9 +17,9 @@ from sms.io.units import split_column_name, to_si
 USUAL_STEP = (5e-4, 5e-2)
 """s between two samples, of a logger beside a pneumatic machine: 2 kHz to 20 Hz."""
 
-RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.0, 2.0, 2.5, 4.0, 5.0, 8.0)]
+RATES = [m * 10.0**k for k in (0, 1, 2, 3) for m in (1.0, 2.0, 2.5, 4.0, 5.0, 8.0)]
 """Hz, that most loggers have."""
-OTHER_RATES = [m * 10.0**k for k in (0, 1, 2) for m in (1.2, 1.25, 1.5, 1.6, 2.4, 3.0, 6.0, 7.5)]
+OTHER_RATES = [m * 10.0**k for k in (0, 1, 2, 3) for m in (1.2, 1.25, 1.5, 1.6, 2.4, 3.0, 6.0, 7.5)]
 OTHER_RATES += [2.0**k for k in range(1, 11)]
 """Hz, that some have."""
 ROUNDED = 2e-3
