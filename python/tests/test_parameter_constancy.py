@@ -174,14 +174,19 @@ def test_what_follows_with_a_play_stays_where_the_command_turns() -> None:
     np.testing.assert_array_equal(after_play(command, 0.0), command)
 
 
-def test_a_spool_that_sticks_is_no_wider_dead_band(tmp_path: Path) -> None:
+def test_spools_that_stick_are_no_wider_dead_bands(tmp_path: Path) -> None:
     print(f"seed {SEED}")
-    data, fitted = fitted_to(tmp_path, "tank", "sticky_spool", SEED % 10_000, "dead_band_width")
-    effect = fitted.hypothesis.causes[0]
-    found = hysteresis(fitted, effect, data)
-    assert found is not None
-    assert abs(found.beside[0]) < 0.6 * found.alone
-    assert found.play[0] > 0.4 * found.alone
+    left, play = [], []
+    for draw_number in range(7):  # of one in thirty more than 0.6 is left
+        seed = (SEED + draw_number) % 10_000
+        folder = tmp_path / str(draw_number)
+        folder.mkdir()
+        data, fitted = fitted_to(folder, "tank", "sticky_spool", seed, "dead_band_width")
+        found = hysteresis(fitted, fitted.hypothesis.causes[0], data)
+        left.append(1.0 if found is None else abs(found.beside[0]) / found.alone)
+        play.append(0.0 if found is None else found.play[0] / found.alone)
+    assert np.median(left) < 0.6
+    assert np.median(play) > 0.4
 
 
 def test_a_wider_dead_band_has_no_memory_and_one_width(tmp_path: Path) -> None:
