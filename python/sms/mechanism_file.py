@@ -27,7 +27,7 @@ def shipped() -> list[str]:
 
 def load_mechanism(path: str | os.PathLike[str]) -> Mechanism:
     """The mechanism of a file, or one that is shipped by its name. InputError names what is wrong where."""
-    from sms.io.schema import parse_toml, read_text  # noqa: PLC0415 (pydantic takes its time)
+    from sms.io.toml_tables import parse_toml, read_text  # noqa: PLC0415 (pydantic takes its time)
 
     file = Path(path)
     if str(path) in shipped() and not file.exists():

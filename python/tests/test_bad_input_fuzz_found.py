@@ -21,9 +21,10 @@ from sms.identification.flow import fit_record
 from sms.io import InputError, Record, load_rig, write_extended_rig
 from sms.io.can_files import read_frames
 from sms.io.plausible import ABSURD, usual_range
-from sms.io.schema import LARGEST_TOML, ParameterTable
+from sms.io.schema import ParameterTable
 from sms.io.signals import SIGNALS
 from sms.io.table_files import read_table
+from sms.io.toml_tables import LARGEST_TOML
 from sms.io.units import to_si
 from sms.report.console import print_diagnosis
 from sms.scenario import load_scenario

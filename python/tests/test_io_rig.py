@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 from io_support import PARAMETERS, PLAIN_RIG, RECORDS, write_rig
 from sms.io import Declaration, InputError, SignalSource, load_rig
-from sms.io.schema import RigFile, keys_of, parse_rig_text
+from sms.io.schema import RigFile, parse_rig_text
+from sms.io.toml_tables import keys_of
 from sms.parameters import PARAMETERS as TABLE
 
 SIGNALS = """

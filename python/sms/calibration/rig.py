@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sms.arrays import Array
 from sms.calibration.schema import NoiseTable, PosesFile, TolerancesTable
 from sms.errors import InputError, did_you_mean
-from sms.io.schema import checked, parse_toml, read_text
+from sms.io.toml_tables import checked, parse_toml, read_text
 from sms.io.units import array_to_si, split_column_name, to_si
 
 CHANNELS = {"roll": "rad", "pitch": "rad", "height": "m", "yaw": "rad", "x": "m", "y": "m"}

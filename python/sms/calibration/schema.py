@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
-from sms.io.schema import Table, TextOrNumber
+from sms.io.toml_tables import Table, TextOrNumber
 
 
 class MeasuredTable(Table):

@@ -6,7 +6,8 @@ import os
 from pathlib import Path
 
 from sms.errors import InputError, nearest
-from sms.io.schema import DataTable, place
+from sms.io.schema import DataTable
+from sms.io.toml_tables import place
 
 
 def beside(path: Path, name: str, where: str, what: str) -> Path:

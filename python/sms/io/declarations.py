@@ -9,14 +9,8 @@ from typing import Any
 
 from sms.errors import InputError, nearest
 from sms.io.data_files import beside
-from sms.io.schema import (
-    ParameterFile,
-    ParameterTable,
-    RigTable,
-    checked,
-    parse_toml,
-    read_text,
-)
+from sms.io.schema import ParameterFile, ParameterTable, RigTable
+from sms.io.toml_tables import checked, parse_toml, read_text
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter
 

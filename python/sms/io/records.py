@@ -28,7 +28,7 @@ Severity = Literal["error", "warning", "note"]
 def in_words(
     file: Path | str, line: int | None, signal: str | None, message: str, remedy: str
 ) -> str:
-    """What a data check saw, in one sentence: "r.csv, line 3, extension: the cell is empty; repair or remove the line"."""
+    """What a data check saw, in one sentence: "r.csv, line 3, extension: the cell is empty; repair the line"."""
     at = f", line {line}" if line is not None else ""
     of = f", {signal}" if signal is not None else ""
     return f"{file}{at}{of}: {message}; {remedy}"

@@ -27,7 +27,6 @@ from sms.io.schema import (
     RecordTable,
     RigFile,
     parse_rig_text,
-    place,
     read_rig_text,
 )
 from sms.io.signal_sources import SignalSource, sources_of
@@ -36,6 +35,7 @@ from sms.io.signals import (
     LEGS,
     without_leg,
 )
+from sms.io.toml_tables import place
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import (
     FLOW_MAP,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from sms.errors import InputError
-from sms.io.schema import TextOrNumber
+from sms.io.toml_tables import TextOrNumber
 from sms.kinematics import inverse_kinematics
 from sms.motion.deck import (
     COLUMN_UNITS,

@@ -7,7 +7,7 @@ import numpy as np
 from sms._core import OutOfWorkspaceError
 from sms.arrays import Array
 from sms.errors import InputError
-from sms.io.schema import TextOrNumber
+from sms.io.toml_tables import TextOrNumber
 from sms.kinematics import inverse_kinematics
 from sms.motion.excitation import aprbs, chirp, sine, steps
 from sms.scenario.load import HIGHEST_FREQUENCY, LONGEST, Scenario

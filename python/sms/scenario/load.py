@@ -12,7 +12,7 @@ from sms._core import LegParams, Params
 from sms.errors import InputError
 from sms.io.data_files import search_places
 from sms.io.declarations import check_bounds, read_declarations
-from sms.io.schema import Table, TextOrNumber
+from sms.io.toml_tables import Table, TextOrNumber
 from sms.io.units import to_si
 from sms.kinematics import height_range
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, is_of_leg

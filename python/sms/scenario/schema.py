@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from sms.io.schema import Table, TextOrNumber
+from sms.io.toml_tables import Table, TextOrNumber
 
 Axis = Literal["roll", "pitch", "heave", "actuators"]
 

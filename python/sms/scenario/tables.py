@@ -1,6 +1,6 @@
 """TOML files into checked tables, and one sentence for a mistake: the key, its value, what is allowed.
 
-The models derive from `sms.io.schema.Table`, in which an unknown key is an error.
+The models derive from `sms.io.toml_tables.Table`, in which an unknown key is an error.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from sms.errors import InputError, nearest
-from sms.io.schema import Table, decoded, parse_toml
+from sms.io.toml_tables import Table, decoded, parse_toml
 from sms.io.units import to_si
 
 Model = TypeVar("Model", bound=Table)

@@ -20,7 +20,7 @@ from scipy.stats import norm, qmc
 
 from sms.arrays import Array
 from sms.errors import InputError
-from sms.io.schema import Table, TextOrNumber
+from sms.io.toml_tables import Table, TextOrNumber
 from sms.io.units import interval_to_si
 from sms.parameters import PARAMETERS
 from sms.scenario.load import known_parameter, parameter_value, scenario_from

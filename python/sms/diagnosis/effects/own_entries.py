@@ -16,8 +16,8 @@ from pydantic import Field
 from sms.diagnosis.selection.excitation import CHECKS, RUN_CHECKS
 from sms.errors import InputError, did_you_mean
 from sms.io.rig import Rig
-from sms.io.schema import Table, TextOrNumber, checked, parse_toml, place, read_text
 from sms.io.signals import KINDS, without_leg
+from sms.io.toml_tables import Table, TextOrNumber, checked, parse_toml, place, read_text
 from sms.io.units import interval_to_si
 from sms.parameters import PARAMETERS, common_parameter
 

@@ -50,7 +50,7 @@ from sms.diagnosis.result import as_json
 from sms.errors import InputError
 from sms.io.data_files import beside
 from sms.io.json_files import input_hashes
-from sms.io.schema import Table, checked, parse_toml, place, read_text
+from sms.io.toml_tables import Table, checked, parse_toml, place, read_text
 from sms.io.write import write_text_atomically
 from sms.report.diagnosis import report_html
 from sms.report.files import header_of
