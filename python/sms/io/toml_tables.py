@@ -131,12 +131,17 @@ def checked(model: type[Model], tables: Mapping[str, Any], path: Path) -> Model:
     try:
         return model.model_validate(tables)
     except ValidationError as problem:
-        errors: list[dict[str, Any]] = [dict(error) for error in problem.errors()]
+        error, more = first_mistake(problem)
+    raise InputError(f"{path}, {_sentence(model, error, tables)}{more}")
+
+
+def first_mistake(problem: ValidationError) -> tuple[dict[str, Any], str]:
+    """The error to speak of, and in words how many more there are."""
+    errors: list[dict[str, Any]] = [dict(error) for error in problem.errors()]
     # A misspelt key also makes its right spelling missing: the misspelling alone is what to say.
     misspelt = [error["loc"][:-1] for error in errors if error["type"] == "extra_forbidden"]
     errors = [e for e in errors if e["type"] != "missing" or e["loc"][:-1] not in misspelt]
-    more = f" (and {len(errors) - 1} more in this file)" if len(errors) > 1 else ""
-    raise InputError(f"{path}, {_sentence(model, errors[0], tables)}{more}")
+    return errors[0], f" (and {len(errors) - 1} more in this file)" if len(errors) > 1 else ""
 
 
 def place(*location: str | int) -> str:

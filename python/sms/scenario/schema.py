@@ -155,7 +155,20 @@ EXCITATIONS: dict[str, type[ExcitationTable]] = {
 }
 
 
-class DeckMotionTable(Table):
+class MotionTable(Table):
+    """What every motion of a deck has."""
+
+    fade: TextOrNumber = "5 s"
+    """Time over which the motion is led from rest at its start, and back to rest at its end."""
+    clearance: TextOrNumber | None = None
+    """Length kept free at both ends of the stroke; without it, the parameter `cushion_length`."""
+    beyond: Literal["refuse", "clip", "scale"] = "refuse"
+    """What is done with a motion that stroke or flow do not allow: `refuse` it, `clip` heave and tilt at the edge of
+    the workspace and limit the speed, or `scale` all of it by one factor.
+    """
+
+
+class DeckMotionTable(MotionTable):
     """[deck_motion]: a record of a deck's attitude as the platform's command."""
 
     file: str
@@ -190,17 +203,9 @@ class DeckMotionTable(Table):
     """Lower cut-off frequency of the band-pass filter (Butterworth, zero phase); 0 Hz: only a low-pass filter."""
     band_high: TextOrNumber = "1 Hz"
     """Upper cut-off frequency of the filter."""
-    fade: TextOrNumber = "5 s"
-    """Time over which the motion is led from rest at its start, and back to rest at its end."""
-    clearance: TextOrNumber | None = None
-    """Length kept free at both ends of the stroke; without it, the parameter `cushion_length`."""
-    beyond: Literal["refuse", "clip", "scale"] = "refuse"
-    """What is done with a motion that stroke or flow do not allow: `refuse` it, `clip` heave and tilt at the edge of
-    the workspace and limit the speed, or `scale` all of it by one factor.
-    """
 
 
-class SeaTable(Table):
+class SeaTable(MotionTable):
     """[sea]: a synthetic deck motion."""
 
     state: float
@@ -209,14 +214,6 @@ class SeaTable(Table):
     """Of the random waves; the same seed gives the same motion."""
     heave: bool = False
     """Whether the platform heaves, too."""
-    fade: TextOrNumber = "5 s"
-    """Time over which the motion is led from rest at its start, and back to rest at its end."""
-    clearance: TextOrNumber | None = None
-    """Length kept free at both ends of the stroke; without it, the parameter `cushion_length`."""
-    beyond: Literal["refuse", "clip", "scale"] = "refuse"
-    """What is done with a motion that stroke or flow do not allow: `refuse` it, `clip` heave and tilt at the edge of
-    the workspace and limit the speed, or `scale` all of it by one factor.
-    """
 
 
 class OutputTable(Table):

@@ -13,7 +13,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from sms.errors import InputError, nearest
-from sms.io.toml_tables import Table, decoded, parse_toml
+from sms.io.toml_tables import Table, decoded, first_mistake, parse_toml
 from sms.io.units import to_si
 
 Model = TypeVar("Model", bound=Table)
@@ -44,12 +44,8 @@ def checked(model: type[Model], tables: Mapping[str, Any], path: Path) -> Model:
     try:
         return model.model_validate(tables)
     except ValidationError as problem:
-        errors: list[dict[str, Any]] = [dict(error) for error in problem.errors()]
-    # A misspelt key also makes its right spelling missing: the misspelling alone is what to say.
-    misspelt = [error["loc"][:-1] for error in errors if error["type"] == "extra_forbidden"]
-    errors = [e for e in errors if e["type"] != "missing" or e["loc"][:-1] not in misspelt]
-    more = f" (and {len(errors) - 1} more in this file)" if len(errors) > 1 else ""
-    raise InputError(f"{path}, {_sentence(model, errors[0])}{more}")
+        error, more = first_mistake(problem)
+    raise InputError(f"{path}, {_sentence(model, error)}{more}")
 
 
 def place(keys: Sequence[str | int]) -> str:
