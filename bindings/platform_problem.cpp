@@ -2,6 +2,7 @@
 #include <pybind11/eigen.h>
 
 #include <memory>
+#include <optional>
 
 #include "estimation/platform_loop.hpp"
 #include "estimation/poses.hpp"
@@ -90,10 +91,11 @@ est::PlatformNoise platform_noise(const Noise& noise) {
 std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> records, const Noise& noise,
                                               const std::string& friction, const std::string& valve,
                                               const std::string& chambers, int masses, double window,
-                                              double longest_step, int threads) {
+                                              double longest_step, const std::optional<double>& elsewhere,
+                                              int threads) {
   return std::make_unique<PlatformProblem>(
       est::PlatformPlant(std::move(records), platform_noise(noise), laws_of(friction, valve, chambers),
-                         static_cast<sms::MassModel>(masses), longest_step),
+                         static_cast<sms::MassModel>(masses), {longest_step, elsewhere.value_or(longest_step)}),
       options_of(window, threads));
 }
 
@@ -212,9 +214,11 @@ void bind_platform_problem(py::module_& m) {
       py::init(&make_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
       py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
       py::arg("chambers") = "polytropic", py::arg("masses") = 0, py::arg("window") = 1.0,
-      py::arg("longest_step") = 2.5e-3, py::arg("threads") = 1,
+      py::arg("longest_step") = 2.5e-3, py::arg("longest_step_elsewhere") = py::none(), py::arg("threads") = 1,
       "noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, "
-      "chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, "
+      "chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. longest_step: of the integration, s; "
+      "longest_step_elsewhere: where the recorded extensions say that all pistons are well on their way; None: the "
+      "same. Hidden inputs: forces on the three pistons, "
       "N, and flows into the three lower and the three upper chambers, kg/s.");
   auto loop = bind_shooting_problem<est::PlatformLoopPlant>(m, "PlatformLoopProblem");
   bind_evaluate<PlatformLoopProblem>(loop);

@@ -2,6 +2,7 @@
 #include "shooting_problem.hpp"
 
 #include <memory>
+#include <optional>
 
 #include "estimation/bench_loop.hpp"
 #include "estimation/tank_plant.hpp"
@@ -39,9 +40,10 @@ est::BenchNoise bench_noise(const Noise& noise) {
 std::unique_ptr<BenchProblem> make_bench_problem(std::vector<est::BenchRecord> records, const Noise& noise,
                                                  const std::string& friction, const std::string& valve,
                                                  const std::string& chambers, double window, double longest_step,
-                                                 int threads) {
+                                                 const std::optional<double>& elsewhere, int threads) {
   return std::make_unique<BenchProblem>(
-      est::BenchPlant(std::move(records), bench_noise(noise), laws_of(friction, valve, chambers), longest_step),
+      est::BenchPlant(std::move(records), bench_noise(noise), laws_of(friction, valve, chambers),
+                      {longest_step, elsewhere.value_or(longest_step)}),
       options_of(window, threads));
 }
 
@@ -74,11 +76,12 @@ est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eige
 
 std::unique_ptr<TankPlantProblem> make_tank_plant_problem(std::vector<est::TankPlantRecord> records, const Noise& noise,
                                                           const std::string& chambers, double window,
-                                                          double longest_step, int threads) {
+                                                          double longest_step, const std::optional<double>& elsewhere,
+                                                          int threads) {
   const est::TankNoise sizes{noise.at("tank_pressure"), noise.at("tank_temperature"), noise.at("supply_pressure")};
   return std::make_unique<TankPlantProblem>(
       est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", "iso_0_4_mpa", chambers),
-                     longest_step),
+                     {longest_step, elsewhere.value_or(longest_step)}),
       options_of(window, threads));
 }
 
@@ -106,12 +109,15 @@ void bind_bench(py::module_& m) {
            "between two samples of the command, \"linear\" or the \"previous\" one.");
   auto bench = bind_shooting_problem<est::BenchPlant, est::Problem>(m, "BenchProblem");
   bind_state(bench);
-  bench.def(py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
-            py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
-            py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
-            py::arg("threads") = 1,
-            "noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and "
-            "supply_pressure. Hidden inputs: a force, N, and flows into either chamber, kg/s.");
+  bench.def(
+      py::init(&make_bench_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+      py::arg("friction") = "acceleration_dependent", py::arg("valve") = "iso_0_4_mpa",
+      py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
+      py::arg("longest_step_elsewhere") = py::none(), py::arg("threads") = 1,
+      "noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and "
+      "supply_pressure. longest_step: of the integration, s; longest_step_elsewhere: where the recorded extension "
+      "says that the piston is well on its way; None: the same. Hidden inputs: a force, N, and flows into either "
+      "chamber, kg/s.");
   bind_shooting_problem<est::BenchLoopPlant, est::Problem>(m, "BenchLoopProblem")
       .def(py::init(&make_bench_loop_problem), py::kw_only(), py::arg("records"), py::arg("noise"), py::arg("said"),
            py::arg("law") = "pid", py::arg("compensated") = true, py::arg("electronics") = false,
@@ -133,11 +139,13 @@ void bind_tank(py::module_& m) {
            py::arg("valve") = "iso_0_4_mpa");
   auto tank = bind_shooting_problem<est::TankPlant, est::Problem>(m, "TankPlantProblem");
   bind_state(tank);
-  tank.def(py::init(&make_tank_plant_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
-           py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
-           py::arg("threads") = 1,
-           "noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden "
-           "inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.");
+  tank.def(
+      py::init(&make_tank_plant_problem), py::kw_only(), py::arg("records"), py::arg("noise"),
+      py::arg("chambers") = "polytropic", py::arg("window") = 1.0, py::arg("longest_step") = 1e-3,
+      py::arg("longest_step_elsewhere") = py::none(), py::arg("threads") = 1,
+      "noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. longest_step: "
+      "of the integration, s; longest_step_elsewhere: where the command has rested for long; None: the same. Hidden "
+      "inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.");
 }
 
 }  // namespace

@@ -5,10 +5,10 @@ namespace estimation {
 
 ControlGrid control_grid(double record_step, double period, double longest_step) {
   if (period > record_step) {
-    const int steps = detail::steps_over(record_step, longest_step);
+    const int steps = steps_over(record_step, longest_step);
     return {steps, static_cast<int>(std::lround(period / record_step)) * steps};
   }
-  const int every = detail::steps_over(period, longest_step);
+  const int every = steps_over(period, longest_step);
   return {static_cast<int>(std::lround(record_step / period)) * every, every};
 }
 

@@ -164,12 +164,12 @@ class SimulatedController final : public ValveDrive<S> {
   // V at the valve in the present step.
   S at(double) const override { return mean_; }
 
-  // Step i after sample k of the window begins at state y: the controller takes its sample if it is time.
-  void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>& sensors,
+  // A step of the grid begins at state y: the controller takes its sample if it is time.
+  void step_begins(const Step& step, const BenchState<S>& y, const ActuatorSensors<S>& sensors,
                    BenchState<S>& rate) override {
-    const int q = (window_.first + k) * grid_.steps + i;
+    const int q = (window_.first + step.sample) * grid_.steps + step.part;
     if (hidden_) {
-      pushed_ = hidden_.at(0, k + double(i) / grid_.steps);
+      pushed_ = hidden_.at(0, step.begins());
     }
     if (q % grid_.every == 0) {
       const int j = q / grid_.every;

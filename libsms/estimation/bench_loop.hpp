@@ -39,18 +39,19 @@ class BenchLoopPlant : public BenchPlant {
   ControlLaw law_;
   std::vector<Eigen::VectorXd> integral_;  // of each record: before each sample of the controller as declared, V
   double said_period_;
+  double longest_step_;  // s
 };
 
 template <typename S>
 void BenchLoopPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
                               const S* hidden, int knots) const {
-  const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
+  const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step_);
   const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(BenchPlant::kHidden);
   const DriveOf<S> controlled = [&](const Bench<S>& bench, const S& h) {
     return std::make_unique<SimulatedController<S>>(bench.params, laws(), control_record(window.record), window, law_,
                                                     grid, h, start[BenchPlant::kStart], at_output, command_noise_);
   };
-  simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
+  simulate_driven(params, window, SampleSteps(grid.steps), controlled, start, residual, hidden, knots);
 }
 
 // Compiled in bench_loop.cpp.

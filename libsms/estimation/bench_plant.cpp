@@ -27,10 +27,11 @@ void check(const BenchRecord& record, std::size_t number) {
 }  // namespace
 
 BenchPlant::BenchPlant(std::vector<BenchRecord> records, const BenchNoise& noise, const ActuatorLaws& laws,
-                       double longest_step)
-    : records_(std::move(records)), noise_(noise), laws_(laws), longest_step_(longest_step) {
+                       const LongestSteps& longest_step)
+    : records_(std::move(records)), noise_(noise), laws_(laws) {
   for (std::size_t i = 0; i < records_.size(); ++i) {
     check(records_[i], i);
+    steps_.push_back(steps_by_motion({&records_[i].extension}, records_[i].step, longest_step));
   }
 }
 
@@ -52,9 +53,9 @@ Eigen::VectorXd BenchPlant::state(const Params<double>& params, const Window& wi
                                   const Eigen::VectorXd& start) const {
   const BenchRecord& record = of(window.record);
   const Bench<double> bench = make_bench(in_run(params, record), laws_);
-  const int steps = detail::steps_over(record.step, longest_step_);
-  RecordedCommand<double> drive(bench.params, laws_, record.command, record.hold, record.step, window.first, steps,
-                                record.step / steps);
+  const int parts = steps_[static_cast<std::size_t>(window.record)].most();
+  RecordedCommand<double> drive(bench.params, laws_, record.command, record.hold, record.step, window.first, parts,
+                                record.step / parts);
   const BenchState<double> state = begin(bench, window, start.data(), drive);
   return vector_of(state);
 }

@@ -16,7 +16,7 @@
 #include "estimation/hidden_inputs.hpp"
 #include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
-#include "sms/integrate_stiff.hpp"
+#include "estimation/through_window.hpp"
 #include "sms/plant_sensors.hpp"
 
 namespace sms {
@@ -52,7 +52,8 @@ class BenchPlant {
   static constexpr int kHidden = 3;  // force, N; mass flow into the lower and into the upper chamber, kg/s
 
   // std::invalid_argument for arrays of different lengths or numbers that are not finite; a reading may be NaN.
-  BenchPlant(std::vector<BenchRecord> records, const BenchNoise& noise, const ActuatorLaws& laws, double longest_step);
+  BenchPlant(std::vector<BenchRecord> records, const BenchNoise& noise, const ActuatorLaws& laws,
+             const LongestSteps& longest_step);
 
   static double start_scale(int k) {
     constexpr double scale[kStart] = {5e-3, 0.3, 2e4, 2e4, 2e4, 1e-3, 20.0, 20.0};
@@ -77,21 +78,20 @@ class BenchPlant {
  protected:
   const BenchRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
   const ActuatorLaws& laws() const { return laws_; }
-  double longest_step() const { return longest_step_; }
 
   // Which way the piston had gone last, by more than the noise.
   double moved_last(const Eigen::VectorXd& extension, int sample) const {
     return detail::moved_last(extension, sample, 6.0 * noise_.extension);
   }
 
-  // Makes what drives the valve in a simulation by steps of h.
+  // Makes what drives the valve in a simulation whose shortest steps are h.
   template <typename S>
   using DriveOf = std::function<std::unique_ptr<ValveDrive<S>>(const Bench<S>& bench, const S& h)>;
 
-  // As simulate(), in `steps` steps a sample.
+  // As simulate(), in these steps.
   template <typename S>
-  void simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf<S>& drive_of,
-                       const S* start, S* residual, const S* hidden, int knots) const;
+  void simulate_driven(const Params<S>& params, const Window& window, const SampleSteps& steps,
+                       const DriveOf<S>& drive_of, const S* start, S* residual, const S* hidden, int knots) const;
 
   // The state in which a window begins.
   template <typename S>
@@ -114,7 +114,7 @@ class BenchPlant {
   std::vector<BenchRecord> records_;
   BenchNoise noise_;
   ActuatorLaws laws_;
-  double longest_step_;
+  std::vector<SampleSteps> steps_;  // of each record
 };
 
 template <typename S>
@@ -140,10 +140,10 @@ template <typename S>
 void BenchPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
                           int knots) const {
   const BenchRecord& record = of(window.record);
-  const int steps = detail::steps_over(record.step, longest_step_);
+  const SampleSteps& steps = steps_[static_cast<std::size_t>(window.record)];
   const DriveOf<S> recorded = [&](const Bench<S>& bench, const S& h) {
     return std::make_unique<RecordedCommand<S>>(bench.params, bench.laws, record.command, record.hold, record.step,
-                                                window.first, steps, h);
+                                                window.first, steps.most(), h);
   };
   simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
 }
@@ -166,14 +166,15 @@ BenchState<S> BenchPlant::begin(const Bench<S>& bench, const Window& window, con
 }
 
 template <typename S>
-void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, int steps, const DriveOf<S>& drive_of,
-                                 const S* start, S* residual, const S* hidden, int knots) const {
+void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, const SampleSteps& steps,
+                                 const DriveOf<S>& drive_of, const S* start, S* residual, const S* hidden,
+                                 int knots) const {
   const BenchRecord& record = of(window.record);
   const Bench<S> bench = make_bench(in_run(params, record), laws_);
   const Params<S>& p = bench.params;
   const HiddenInputs<S> pushes(hidden, knots, window.samples);
-  const S h(record.step / steps);
-  const std::unique_ptr<ValveDrive<S>> driven_by = drive_of(bench, h);
+  const S shortest(record.step / steps.most());
+  const std::unique_ptr<ValveDrive<S>> driven_by = drive_of(bench, shortest);
   ValveDrive<S>& drive = *driven_by;
   BenchState<S> state = begin(bench, window, start, drive);
 
@@ -187,36 +188,35 @@ void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, 
       rate.actuator.upper.pressure += pushes.at(2, at) * p.gas_constant * p.air_temperature / t.actuator.upper.volume;
     }
   };
-  BenchSensors<S> sensors(bench, h, is_absent(p.backlash) ? 0.0 : moved_last(record.extension, window.first));
-  const S g = stiff_share<S>() * h;
-  BenchState<S> rate;
-  for (int k = 0;; ++k) {
-    for (int i = 0; i < steps; ++i) {
-      rates(k + double(i) / steps, state, rate);
-      sensors.follow(bench, state, rate, t);
-      drive.step_begins(k, i, state, sensors.leg(), rate);
-      if (i == 0) {
-        residual = readings<S>(record, window.first + k, bench, sensors, state, rate, t, residual);
+  BenchSensors<S> sensors(bench, shortest, is_absent(p.backlash) ? 0.0 : moved_last(record.extension, window.first));
+  through_window<S>(
+      steps, window.first, window.samples, record.step, state,
+      [&](const Step& step, const BenchState<S>& y, BenchState<S>& rate) { rates(step.begins(), y, rate); },
+      [&](int, double, const BenchState<S>& y, const BenchState<S>& rate) { sensors.follow(bench, y, rate, t); },
+      [&](const Step& step, const BenchState<S>& y, BenchState<S>& rate) {
+        drive.step_begins(step, y, sensors.leg(), rate);
+      },
+      [&](int k, const BenchState<S>& y, const BenchState<S>& rate) {
+        residual = readings<S>(record, window.first + k, bench, sensors, y, rate, t, residual);
         residual = drive.readings(window.first + k, residual);
-        if (k == window.samples - 1) {
-          return;
-        }
-      }
-      const auto slopes = stiffness(bench, state, t);
-      const auto end_rate = [&](const BenchState<S>& moved, BenchState<S>& there) {
-        rates(k + double(i + 1) / steps, moved, there);
-        return SMS_OK;
-      };
-      stiff_step(
-          end_rate, [&](BenchState<S>& k1) { solve_stiff(slopes, g, k1); }, h, rate, state);
-    }
-  }
+      },
+      [&](const Step& step, const S& h, BenchState<S>& rate, BenchState<S>& y) {
+        const S g = stiff_share<S>() * h;
+        const auto slopes = stiffness(bench, y, t);
+        const auto end_rate = [&](const BenchState<S>& moved, BenchState<S>& there) {
+          rates(step.ends(), moved, there);
+          return SMS_OK;
+        };
+        stiff_step(
+            end_rate, [&](BenchState<S>& k1) { solve_stiff(slopes, g, k1); }, h, rate, y);
+      },
+      [&](const S& time) { sensors.look_every(time); });
 }
 
 // Compiled in bench_plant.cpp. What drives the valve is the same code at each scalar, here and in bench_loop.cpp.
-#define SMS_BENCH_IS_DRIVEN(S)                                                                                        \
-  template void BenchPlant::simulate_driven<S>(const Params<S>&, const Window&, int, const DriveOf<S>&, const S*, S*, \
-                                               const S*, int) const
+#define SMS_BENCH_IS_DRIVEN(S)                                                                                         \
+  template void BenchPlant::simulate_driven<S>(const Params<S>&, const Window&, const SampleSteps&, const DriveOf<S>&, \
+                                               const S*, S*, const S*, int) const
 extern SMS_BENCH_IS_DRIVEN(double);
 extern SMS_BENCH_IS_DRIVEN(ParameterJet);
 extern SMS_PLANT_SIMULATES(BenchPlant, double);

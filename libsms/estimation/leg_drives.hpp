@@ -22,10 +22,10 @@ struct LegDrives {
   }
   // V, `at` counted in samples from the window's first.
   Vec3<S> at(double at) const { return {leg[0]->at(at), leg[1]->at(at), leg[2]->at(at)}; }
-  // Step i after sample k of the window begins at this state, which the sensors see.
-  void step_begins(int k, int i, const Pistons<S>& y, const PathSensors<S>& sensors, Pistons<S>& rate) {
+  // A step begins at this state, which the sensors see.
+  void step_begins(const Step& step, const Pistons<S>& y, const PathSensors<S>& sensors, Pistons<S>& rate) {
     for (int j = 0; j < 3; ++j) {
-      leg[j]->step_begins(k, i, y.leg[j], sensors.leg[j], rate.leg[j]);
+      leg[j]->step_begins(step, y.leg[j], sensors.leg[j], rate.leg[j]);
     }
   }
   S* readings(int sample, S* out) const {

@@ -56,8 +56,8 @@ template <typename S>
 Lag<S> spool_at_sample(const Params<S>& p, const Eigen::VectorXd& command, int sample, double step) {
   constexpr double kLongest = 1e-3;  // s
   const int parts = std::max(1, static_cast<int>(std::ceil(step / kLongest - 1e-9)));
-  return RecordedVoltage<S>(command, Hold::linear, parts, delay_to_chamber(p) / S(step))
-      .spool(p, sample, S(step / parts));
+  return RecordedVoltage<S>(command, Hold::linear, delay_to_chamber(p) / S(step))
+      .spool(p, sample, parts, S(step / parts));
 }
 
 // What no sensor sees but spool, film and reservoir, a sample later. `rate` is used up.

@@ -38,6 +38,16 @@ struct PathSensors {
         roll(roll_sensor(machines.common), step),
         pitch(pitch_sensor(machines.common), step) {}
 
+  // From the next look on they are this far apart, s.
+  void look_every(const S& step_now) {
+    for (ActuatorSensors<S>& sensors : leg) {
+      sensors.look_every(step_now);
+    }
+    for (Sensor<S>* sensor : {&supply, &roll, &pitch}) {
+      sensor->look_every(step_now);
+    }
+  }
+
   // The state a step after the last call, where the platform is, and the forces on the pistons.
   void follow(const LegMachines<S>& machines, const PathPoint<S>& place, const Pistons<S>& y, const Pistons<S>& rate,
               const PistonTerms<S>& t) {

@@ -11,7 +11,8 @@ PlatformLoopPlant::PlatformLoopPlant(std::vector<PlatformRecord> records, const 
     : PlatformPlant(std::move(records), noise, laws, masses, longest_step),
       command_noise_(command_noise),
       law_(law),
-      said_period_(said.control_period) {
+      said_period_(said.control_period),
+      longest_step_(longest_step) {
   for (int record = 0; record < this->records(); ++record) {
     LegSignals integral;
     for (int i = 0; i < 3; ++i) {
@@ -24,7 +25,7 @@ PlatformLoopPlant::PlatformLoopPlant(std::vector<PlatformRecord> records, const 
 }
 
 Eigen::VectorXd PlatformLoopPlant::guess(int record, int first) const {
-  const Eigen::Index begins = control_grid(step(record), said_period_, longest_step()).begins(first, step(record));
+  const Eigen::Index begins = control_grid(step(record), said_period_, longest_step_).begins(first, step(record));
   Eigen::VectorXd start(kStart);
   start.head<PlatformPlant::kStart>() = PlatformPlant::guess(record, first);
   for (int i = 0; i < 3; ++i) {

@@ -46,12 +46,13 @@ class PlatformLoopPlant : public PlatformPlant {
   ControlLaw law_;
   std::vector<LegSignals> integral_;  // of each record: before each sample of the controllers as declared, V
   double said_period_;
+  double longest_step_;  // s
 };
 
 template <typename S>
 void PlatformLoopPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
                                  const S* hidden, int knots) const {
-  const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step());
+  const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step_);
   const DrivesOf<S> controlled = [&](const LegMachines<S>& machines, const S& h) {
     const auto of_leg = [&](int i) {
       const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(PlatformPlant::kHidden + i);
@@ -61,7 +62,7 @@ void PlatformLoopPlant::simulate(const LegParams<S>& params, const Window& windo
     };
     return LegDrives<S>{{of_leg(0), of_leg(1), of_leg(2)}};
   };
-  simulate_driven(params, window, grid.steps, controlled, start, residual, hidden, knots);
+  simulate_driven(params, window, SampleSteps(grid.steps), controlled, start, residual, hidden, knots);
 }
 
 // Compiled in platform_loop.cpp.

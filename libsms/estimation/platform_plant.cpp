@@ -37,14 +37,16 @@ void check(const PlatformRecord& record, std::size_t number) {
 }  // namespace
 
 PlatformPlant::PlatformPlant(std::vector<PlatformRecord> records, const PlatformNoise& noise, const ActuatorLaws& laws,
-                             MassModel masses, double longest_step)
-    : records_(std::move(records)), noise_(noise), laws_(laws), masses_(masses), longest_step_(longest_step) {
+                             MassModel masses, const LongestSteps& longest_step)
+    : records_(std::move(records)), noise_(noise), laws_(laws), masses_(masses) {
   int samples_before = 0;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     check(records_[i], i);
     measured_.push_back(detail::smoothed(records_[i].extension, records_[i].step));
     first_of_.push_back(samples_before);
     samples_before += samples(static_cast<int>(i));
+    const LegSignals& x = records_[i].extension;
+    steps_.push_back(steps_by_motion({&x[0], &x[1], &x[2]}, records_[i].step, longest_step));
   }
 }
 

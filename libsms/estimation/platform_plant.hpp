@@ -22,7 +22,7 @@
 #include "estimation/leg_drives.hpp"
 #include "estimation/recorded_command.hpp"
 #include "estimation/shooting.hpp"
-#include "sms/integrate_stiff.hpp"
+#include "estimation/through_window.hpp"
 
 namespace sms {
 namespace estimation {
@@ -65,7 +65,7 @@ class PlatformPlant {
   // std::invalid_argument for arrays of different lengths, numbers that are not finite (a pressure, roll or pitch may be
   // NaN), extensions that are no pose.
   PlatformPlant(std::vector<PlatformRecord> records, const PlatformNoise& noise, const ActuatorLaws& laws,
-                MassModel masses, double longest_step);
+                MassModel masses, const LongestSteps& longest_step);
 
   static double start_scale(int k) {
     constexpr double scale[kStart / 3] = {5e-3, 0.3, 2e4, 2e4, 2e4, 1e-3};
@@ -89,16 +89,15 @@ class PlatformPlant {
  protected:
   const PlatformRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
   const ActuatorLaws& laws() const { return laws_; }
-  double longest_step() const { return longest_step_; }
 
-  // Makes what drives the valves in a simulation by steps of h.
+  // Makes what drives the valves in a simulation whose shortest steps are h.
   template <typename S>
   using DrivesOf = std::function<LegDrives<S>(const LegMachines<S>& machines, const S& h)>;
 
-  // As simulate(), in `steps` steps a sample.
+  // As simulate(), in these steps.
   template <typename S>
-  void simulate_driven(const LegParams<S>& params, const Window& window, int steps, const DrivesOf<S>& drives_of,
-                       const S* start, S* residual, const S* hidden, int knots) const;
+  void simulate_driven(const LegParams<S>& params, const Window& window, const SampleSteps& steps,
+                       const DrivesOf<S>& drives_of, const S* start, S* residual, const S* hidden, int knots) const;
 
  private:
   // What the position sensors would have read in the window were they good, by what the parameters say of them.
@@ -115,7 +114,7 @@ class PlatformPlant {
   PlatformNoise noise_;
   ActuatorLaws laws_;
   MassModel masses_;
-  double longest_step_;
+  std::vector<SampleSteps> steps_;  // of each record
 };
 
 template <typename S>
@@ -156,11 +155,11 @@ template <typename S>
 void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
                              const S* hidden, int knots) const {
   const PlatformRecord& record = of(window.record);
-  const int steps = detail::steps_over(record.step, longest_step_);
+  const SampleSteps& steps = steps_[static_cast<std::size_t>(window.record)];
   const DrivesOf<S> recorded = [&](const LegMachines<S>& machines, const S& h) {
     const auto of_leg = [&](int i) {
       return std::make_unique<RecordedCommand<S>>(machines.leg[i], laws_, record.command[static_cast<std::size_t>(i)],
-                                                  record.hold, record.step, window.first, steps, h);
+                                                  record.hold, record.step, window.first, steps.most(), h);
     };
     return LegDrives<S>{{of_leg(0), of_leg(1), of_leg(2)}};
   };
@@ -218,7 +217,7 @@ struct PistonStiffness {
 };
 
 template <typename S>
-void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& window, int steps,
+void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& window, const SampleSteps& steps,
                                     const DrivesOf<S>& drives_of, const S* start, S* residual, const S* hidden,
                                     int knots) const {
   const PlatformRecord& record = of(window.record);
@@ -229,12 +228,11 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
   const auto known = paths_->of(first_of_[static_cast<std::size_t>(window.record)] + window.first,
                                 plain_params(machines.common), masses_, measured);
   const MeasuredPath<S>& path = path_with_slopes(*known, machines.common, masses_, measured);
-  const S h(record.step / steps);
-  const S g = stiff_share<S>() * h;
+  const S shortest(record.step / steps.most());
   const HiddenInputs<S> pushes(hidden, knots, window.samples);
 
   Pistons<S> state = pistons_at_start(machines, record, window.first, start);
-  auto drives = drives_of(machines, h);
+  auto drives = drives_of(machines, shortest);
   drives.begin(state);
 
   PistonTerms<S> t{};
@@ -248,38 +246,41 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
     piston_rates<S>(machines, laws_, place_between<S>(path.points, sample, part), path.leaning, y,
                     drives.at(sample + part), pushes ? push : nullptr, t, rate);
   };
-  PathSensors<S> sensors(machines, h, went_before(machines, record, window.first, noise_));
-  Pistons<S> rate;
-  for (int k = 0;; ++k) {
-    for (int step = 0; step < steps; ++step) {
-      const double begin = double(step) / steps;
-      const PathPoint<S> place = place_between<S>(path.points, k, begin);
-      rates_at(k, begin, state, rate);
-      sensors.follow(machines, place, state, rate, t);
-      drives.step_begins(k, step, state, sensors, rate);
-      if (step == 0) {
-        residual = readings<S>(record, window.first + k, sensors, place, state, rate, residual);
+  PathSensors<S> sensors(machines, shortest, went_before(machines, record, window.first, noise_));
+  through_window<S>(
+      steps, window.first, window.samples, record.step, state,
+      [&](const Step& step, const Pistons<S>& y, Pistons<S>& rate) {
+        rates_at(step.sample, double(step.part) / step.pace.parts, y, rate);
+      },
+      [&](int sample, double part, const Pistons<S>& y, const Pistons<S>& rate) {
+        sensors.follow(machines, place_between<S>(path.points, sample, part), y, rate, t);
+      },
+      [&](const Step& step, const Pistons<S>& y, Pistons<S>& rate) { drives.step_begins(step, y, sensors, rate); },
+      [&](int k, const Pistons<S>& y, const Pistons<S>& rate) {
+        const PathPoint<S> place = place_between<S>(path.points, k, 0.0);
+        residual = readings<S>(record, window.first + k, sensors, place, y, rate, residual);
         residual = drives.readings(window.first + k, residual);
-        if (k == window.samples - 1) {
-          return;
-        }
-      }
-      const PistonStiffness<S> slopes(machines, laws_, path.points[static_cast<std::size_t>(k)].mass, t);
-      const auto solve = [&](Pistons<S>& y) { slopes.solve(g, y); };
-      const auto end_rate = [&](const Pistons<S>& moved, Pistons<S>& there) {
-        const bool last = step + 1 == steps;
-        rates_at(last ? k + 1 : k, last ? 0.0 : double(step + 1) / steps, moved, there);
-        return SMS_OK;
-      };
-      stiff_step(end_rate, solve, h, rate, state);
-    }
-  }
+      },
+      [&](const Step& step, const S& h, Pistons<S>& rate, Pistons<S>& y) {
+        const S g = stiff_share<S>() * h;
+        const auto& mass = path.points[static_cast<std::size_t>(step.sample)].mass;
+        const PistonStiffness<S> slopes(machines, laws_, mass, t);
+        const auto solve = [&](Pistons<S>& k1) { slopes.solve(g, k1); };
+        const auto end_rate = [&](const Pistons<S>& moved, Pistons<S>& there) {
+          const bool last = step.part + 1 == step.pace.parts;
+          rates_at(last ? step.sample + step.pace.samples : step.sample,
+                   last ? 0.0 : double(step.part + 1) / step.pace.parts, moved, there);
+          return SMS_OK;
+        };
+        stiff_step(end_rate, solve, h, rate, y);
+      },
+      [&](const S& time) { sensors.look_every(time); });
 }
 
 // Compiled in platform_plant.cpp. What drives the valves is the same code at each scalar, here and in platform_loop.cpp.
-#define SMS_PLATFORM_IS_DRIVEN(S)                                                                              \
-  template void PlatformPlant::simulate_driven<S>(const LegParams<S>&, const Window&, int, const DrivesOf<S>&, \
-                                                  const S*, S*, const S*, int) const
+#define SMS_PLATFORM_IS_DRIVEN(S)                                                                         \
+  template void PlatformPlant::simulate_driven<S>(const LegParams<S>&, const Window&, const SampleSteps&, \
+                                                  const DrivesOf<S>&, const S*, S*, const S*, int) const
 extern SMS_PLATFORM_IS_DRIVEN(double);
 extern SMS_PLATFORM_IS_DRIVEN(ParameterJet);
 extern SMS_PLANT_SIMULATES(PlatformPlant, double);

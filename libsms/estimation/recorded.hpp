@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimation/recorded_signal.hpp"
+#include "estimation/sample_steps.hpp"
 #include "sms/integrate_stiff.hpp"
 #include "sms/sensor.hpp"
 #include "sms/valve.hpp"
@@ -20,11 +21,6 @@ enum class Hold : int {
 };
 
 namespace detail {
-
-// Steps of an integration over a time, each within longest_step.
-inline int steps_over(double time, double longest_step) {
-  return std::max(1, static_cast<int>(std::ceil(time / longest_step - 1e-9)));
-}
 
 // The command at a time counted in samples; before the first and after the last it is held.
 template <typename S>
@@ -64,36 +60,42 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
 //
 // Where the previous value is held, a step of the integration has the mean of what arrives within it: a jump that a delay
 // has put into the middle of a step keeps its size and its time to first order, and the simulation is smooth in the delay.
+// So has a step over several samples, whichever way the command goes from one to the next.
 template <typename S>
 class RecordedVoltage {
  public:
-  // In `steps` steps of integration a sample. The command has to last.
-  RecordedVoltage(const Eigen::VectorXd& command, Hold hold, int steps, const S& late)
-      : command_(command), hold_(hold), steps_(steps), late_(late) {}
+  // The command has to last.
+  RecordedVoltage(const Eigen::VectorXd& command, Hold hold, const S& late)
+      : command_(command), hold_(hold), late_(late) {}
 
   bool is_held() const { return hold_ == Hold::previous; }
 
-  // A step begins.
-  void begin_step(double at) {
-    if (is_held()) {
-      mean_ = mean_from(S(at) - late_);
+  // A step of the integration begins. Whether the voltage at its beginning is another from now on.
+  bool begin_step(double at, const Pace& pace) {
+    const bool averaged = averages_;
+    averages_ = is_held() || pace.samples > 1;
+    if (averages_) {
+      mean_ = is_held() ? mean_from(S(at) - late_, pace) : mean_of_straight(S(at) - late_, pace.samples);
     }
+    return averages_ || averaged;
   }
   // V, within that step.
-  S at(double at) const { return is_held() ? mean_ : detail::command_at<S>(command_, S(at) - late_); }
+  S at(double at) const { return averages_ ? mean_ : detail::command_at<S>(command_, S(at) - late_); }
 
-  // The spool at `first`: it follows the command alone, and is run up over the 50 ms before, in stiff steps of h.
-  Lag<S> spool(const Params<S>& p, double first, const S& h) {
+  // The spool at `first`: it follows the command alone, and is run up over the 50 ms before, in stiff steps of h,
+  // `parts` a sample.
+  Lag<S> spool(const Params<S>& p, double first, int parts, const S& h) {
     const int run_up = static_cast<int>(0.05 / value_of(h)) + 1;
     const S omega = angular_frequency(p.valve_frequency), g = stiff_share<S>() * h;
     const auto solve = [&](Lag<S>& k) { solve_lag<S>(omega, p.valve_damping_ratio, g, k); };
-    begin_step(first - double(run_up) / steps_);
-    Lag<S> spool{at(first - double(run_up) / steps_), S(0)};
+    const Pace pace{parts, 1};
+    begin_step(first - double(run_up) / parts, pace);
+    Lag<S> spool{at(first - double(run_up) / parts), S(0)};
     for (int i = -run_up; i < 0; ++i) {
-      const double now = first + double(i) / steps_;
-      begin_step(now);
+      const double now = first + double(i) / parts;
+      begin_step(now, pace);
       const auto end_rate = [&](const Lag<S>& moved, Lag<S>& rate) {
-        rate = spool_rate(p, moved, at(now + 1.0 / steps_));
+        rate = spool_rate(p, moved, at(now + 1.0 / parts));
         return SMS_OK;
       };
       Lag<S> rate = spool_rate(p, spool, at(now));
@@ -109,18 +111,34 @@ class RecordedVoltage {
   }
   // Mean over the step that begins at `from`. A jump at its very beginning belongs to the step before, so that the slope
   // against a delay of zero is that towards a longer one.
-  S mean_from(const S& from) const {
+  S mean_from(const S& from, const Pace& pace) const {
     using std::ceil;
     const int sample = static_cast<int>(ceil(value_of(from) - 1e-9)) - 1;
-    const S before = (S(sample + 1) - from) * S(steps_);  // steps until the next one arrives
-    return value_of(before) < 1.0 ? S(before * held(sample) + (S(1) - before) * held(sample + 1)) : held(sample);
+    const S before = (S(sample + 1) - from) * S(pace.parts);  // steps, or samples, until the next one arrives
+    if (!(value_of(before) < pace.samples)) {
+      return held(sample);
+    }
+    S sum = before * held(sample) + (S(1) - before) * held(sample + pace.samples);
+    for (int k = 1; k < pace.samples; ++k) {
+      sum += held(sample + k);
+    }
+    return pace.samples > 1 ? S(sum * S(1.0 / pace.samples)) : sum;
+  }
+
+  // The same over some samples where it goes straight, by the trapezoidal rule.
+  S mean_of_straight(const S& from, int samples) const {
+    S sum = S(0.5) * (detail::command_at<S>(command_, from) + detail::command_at<S>(command_, from + S(samples)));
+    for (int k = 1; k < samples; ++k) {
+      sum += detail::command_at<S>(command_, from + S(k));
+    }
+    return sum * S(1.0 / samples);
   }
 
   const Eigen::VectorXd& command_;
   Hold hold_;
-  int steps_;
   S late_;
   S mean_{0};
+  bool averages_ = false;
 };
 
 }  // namespace estimation

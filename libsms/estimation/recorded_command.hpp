@@ -16,8 +16,8 @@ class ValveDrive {
   virtual void begin(ActuatorState<S>& actuator) = 0;
   // V, `at` counted in samples from the window's first.
   virtual S at(double at) const = 0;
-  // Step i after sample k of the window begins at this state, which its sensors see: a controller has its say now.
-  virtual void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>& sensors,
+  // A step begins at this state, which its sensors see: a controller has its say now. Samples are the window's.
+  virtual void step_begins(const Step& step, const BenchState<S>& y, const ActuatorSensors<S>& sensors,
                            BenchState<S>& rate) = 0;
   // Writes the whitened errors of what it reads itself and returns where the next begin.
   virtual S* readings(int sample, S* out) const = 0;
@@ -27,21 +27,21 @@ class ValveDrive {
 template <typename S>
 class RecordedCommand final : public ValveDrive<S> {
  public:
-  // For a window from sample `first` on, in `steps` steps of h a sample. Parameters and command have to last.
+  // For a window from sample `first` on; the spool is run up in `parts` steps of h a sample. Parameters and command have to
+  // last.
   RecordedCommand(const Params<S>& p, const ActuatorLaws& laws, const Eigen::VectorXd& command, Hold hold,
-                  double record_step, int first, int steps, const S& h)
+                  double record_step, int first, int parts, const S& h)
       : p_(p),
         laws_(laws),
-        voltage_(command, hold, steps, delay_to_chamber(p) / S(record_step)),
+        voltage_(command, hold, delay_to_chamber(p) / S(record_step)),
         first_(first),
-        steps_(steps),
+        parts_(parts),
         h_(h) {}
 
-  void begin(ActuatorState<S>& actuator) override { actuator.spool = voltage_.spool(p_, first_, h_); }
+  void begin(ActuatorState<S>& actuator) override { actuator.spool = voltage_.spool(p_, first_, parts_, h_); }
   S at(double at) const override { return voltage_.at(first_ + at); }
-  void step_begins(int k, int i, const BenchState<S>& y, const ActuatorSensors<S>&, BenchState<S>& rate) override {
-    if (voltage_.is_held()) {
-      voltage_.begin_step(first_ + (k + double(i) / steps_));
+  void step_begins(const Step& step, const BenchState<S>& y, const ActuatorSensors<S>&, BenchState<S>& rate) override {
+    if (voltage_.begin_step(first_ + step.begins(), step.pace)) {
       drive_rates(p_, laws_, y.actuator, at(0.0), rate.actuator);
     }
   }
@@ -52,7 +52,7 @@ class RecordedCommand final : public ValveDrive<S> {
   ActuatorLaws laws_;
   RecordedVoltage<S> voltage_;
   int first_;
-  int steps_;
+  int parts_;
   S h_;
 };
 

@@ -25,22 +25,12 @@ void check(const TankPlantRecord& record, std::size_t number) {
 }  // namespace
 
 TankPlant::TankPlant(std::vector<TankPlantRecord> records, const TankNoise& noise, const ActuatorLaws& laws,
-                     double longest_step)
-    : records_(std::move(records)), noise_(noise), laws_(laws), longest_step_(longest_step) {
+                     const LongestSteps& longest_step)
+    : records_(std::move(records)), noise_(noise), laws_(laws) {
   for (std::size_t i = 0; i < records_.size(); ++i) {
     check(records_[i], i);
+    steps_.push_back(steps_by_command(records_[i].command, records_[i].step, longest_step));
   }
-}
-
-int TankPlant::steps_of(const Window& window) const {
-  constexpr double kLongerAtRest = 4.0;
-  constexpr double kSettled = 1.0;  // s since the command has moved: far longer than any spool, line or converter takes
-  const TankPlantRecord& record = of(window.record);
-  const Eigen::Index first =
-      std::max<Eigen::Index>(window.first - static_cast<Eigen::Index>(kSettled / record.step), 0);
-  const auto command = record.command.segment(first, window.first + window.samples - first);
-  const bool rests = !(command.maxCoeff() > command.minCoeff());
-  return detail::steps_over(record.step, rests ? kLongerAtRest * longest_step_ : longest_step_);
 }
 
 Eigen::VectorXd TankPlant::guess(int record, int first) const {
@@ -58,10 +48,10 @@ Eigen::VectorXd TankPlant::state(const Params<double>& params, const Window& win
                                  const Eigen::VectorXd& start) const {
   const TankPlantRecord& record = of(window.record);
   const Tank<double> tank = tank_of(params, record);
-  const int steps = steps_of(window);
-  RecordedVoltage<double> command(record.command, record.hold, steps, delay_to_chamber(tank.params) / record.step);
+  const int parts = steps_[static_cast<std::size_t>(window.record)].most();
+  RecordedVoltage<double> command(record.command, record.hold, delay_to_chamber(tank.params) / record.step);
   const TankState<double> state =
-      begin(tank, start.data(), command.spool(tank.params, window.first, record.step / steps));
+      begin(tank, start.data(), command.spool(tank.params, window.first, parts, record.step / parts));
   return vector_of(state);
 }
 

@@ -5,13 +5,13 @@
 // Without heat the temperature is that of the supplied air, and the thermometer sees that. The spool follows the command
 // alone and is run up over the 50 ms before the window.
 //
-// A window in which the spool rests is simulated in longer steps: an opening takes milliseconds, what follows seconds.
+// Where the command rests a step goes over several samples (sample_steps.hpp).
 #pragma once
 
 #include "estimation/hidden_inputs.hpp"
 #include "estimation/recorded.hpp"
 #include "estimation/shooting.hpp"
-#include "sms/integrate_stiff.hpp"
+#include "estimation/through_window.hpp"
 #include "sms/plant_sensors.hpp"
 
 namespace sms {
@@ -44,10 +44,9 @@ class TankPlant {
   static constexpr int kFelt = kStart;
   static constexpr int kHidden = 2;  // mass flow into the tank, kg/s; pressure at the head of the supply line, Pa
 
-  // longest_step: s, where the spool moves. std::invalid_argument for arrays of different lengths or numbers that are not
-  // finite; a reading may be NaN.
+  // std::invalid_argument for arrays of different lengths or numbers that are not finite; a reading may be NaN.
   TankPlant(std::vector<TankPlantRecord> records, const TankNoise& noise, const ActuatorLaws& laws,
-            double longest_step);
+            const LongestSteps& longest_step);
 
   static double start_scale(int k) {
     constexpr double scale[kStart] = {2e4, 20.0, 2e4, 20.0};
@@ -73,9 +72,6 @@ class TankPlant {
  private:
   const TankPlantRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
 
-  // Steps of integration a sample.
-  int steps_of(const Window& window) const;
-
   // Tank and state where a window begins.
   template <typename S>
   Tank<S> tank_of(const Params<S>& params, const TankPlantRecord& record) const;
@@ -90,7 +86,7 @@ class TankPlant {
   std::vector<TankPlantRecord> records_;
   TankNoise noise_;
   ActuatorLaws laws_;
-  double longest_step_;
+  std::vector<SampleSteps> steps_;  // of each record
 };
 
 template <typename S>
@@ -139,12 +135,11 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   const Params<S>& p = tank.params;
   const S head = p.supply_pressure;
   const bool droops = p.supply_line_resistance > S(0);
-  const double sample = record.step;
-  const int steps = steps_of(window);
-  const S h(sample / steps);
+  const SampleSteps& steps = steps_[static_cast<std::size_t>(window.record)];
+  const S shortest(record.step / steps.most());
   const HiddenInputs<S> pushes(hidden, knots, window.samples);
-  RecordedVoltage<S> command(record.command, record.hold, steps, delay_to_chamber(p) / S(sample));
-  TankState<S> state = begin(tank, start, command.spool(p, window.first, h));
+  RecordedVoltage<S> command(record.command, record.hold, delay_to_chamber(p) / S(record.step));
+  TankState<S> state = begin(tank, start, command.spool(p, window.first, steps.most(), shortest));
 
   TankTerms<S> t{};
   // `at` is counted in samples from the window's first.
@@ -158,32 +153,31 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
       rate.gas.pressure += pushes.at(0, at) * p.gas_constant * p.air_temperature / t.space.volume;
     }
   };
-  TankSensors<S> sensors(tank, h);
+  TankSensors<S> sensors(tank, shortest);
   sensors.begin(temperature_is_state(p, laws_.chamber) ? start[3] : p.air_temperature);
 
-  const S g = stiff_share<S>() * h;
-  TankState<S> rate;
-  for (int k = 0;; ++k) {
-    for (int i = 0; i < steps; ++i) {
-      const double at = k + double(i) / steps;
-      command.begin_step(window.first + at);
-      rates(at, state, rate);
-      sensors.follow(tank, state, rate, t);
-      if (i == 0) {
-        residual = readings<S>(record, window.first + k, tank, sensors, state, rate, t, residual);
-        if (k == window.samples - 1) {
-          return;
-        }
-      }
-      const auto slopes = stiffness(tank, state, t);
-      const auto end_rate = [&](TankState<S> moved, TankState<S>& there) {
-        rates(k + double(i + 1) / steps, moved, there);
-        return SMS_OK;
-      };
-      stiff_step(
-          end_rate, [&](TankState<S>& y) { solve_stiff(slopes, g, y); }, h, rate, state);
-    }
-  }
+  through_window<S>(
+      steps, window.first, window.samples, record.step, state,
+      [&](const Step& step, TankState<S>& y, TankState<S>& rate) {
+        command.begin_step(window.first + step.begins(), step.pace);
+        rates(step.begins(), y, rate);
+      },
+      [&](int, double, const TankState<S>& y, const TankState<S>& rate) { sensors.follow(tank, y, rate, t); },
+      [](const Step&, const TankState<S>&, TankState<S>&) {},
+      [&](int k, const TankState<S>& y, const TankState<S>& rate) {
+        residual = readings<S>(record, window.first + k, tank, sensors, y, rate, t, residual);
+      },
+      [&](const Step& step, const S& h, TankState<S>& rate, TankState<S>& y) {
+        const S g = stiff_share<S>() * h;
+        const auto slopes = stiffness(tank, y, t);
+        const auto end_rate = [&](TankState<S> moved, TankState<S>& there) {
+          rates(step.ends(), moved, there);
+          return SMS_OK;
+        };
+        stiff_step(
+            end_rate, [&](TankState<S>& k1) { solve_stiff(slopes, g, k1); }, h, rate, y);
+      },
+      [&](const S& time) { sensors.look_every(time); });
 }
 
 // Compiled in tank_plant.cpp.

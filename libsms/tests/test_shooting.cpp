@@ -19,10 +19,10 @@ constexpr double kStep = 0.005;
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-Eigen::VectorXd command(int samples) {
+Eigen::VectorXd command(int samples, double step = kStep) {
   Eigen::VectorXd u(samples);
   for (int k = 0; k < samples; ++k) {
-    u[k] = 5.0 + 0.9 * std::sin(3.1 * kStep * k) + 0.5 * std::sin(10.7 * kStep * k + 1.0);
+    u[k] = 5.0 + 0.9 * std::sin(3.1 * step * k) + 0.5 * std::sin(10.7 * step * k + 1.0);
   }
   return u;
 }
@@ -59,6 +59,108 @@ TEST_CASE("the stiff step: halving it changes readings by far less than their no
   CHECK((coarse.col(0) - fine.col(0)).cwiseAbs().maxCoeff() < 5e-5);
   CHECK((coarse.col(1) - fine.col(1)).cwiseAbs().maxCoeff() < 150.0);
   CHECK((coarse.col(2) - fine.col(2)).cwiseAbs().maxCoeff() < 150.0);
+}
+
+TEST_CASE("steps of a record: few where every piston is well on its way, most near rest and at the ends") {
+  const int samples = 400;
+  Eigen::VectorXd there_and_back(samples), always(samples);
+  for (int k = 0; k < samples; ++k) {
+    there_and_back[k] = 0.2 - 0.1 * std::cos(2.0 * 3.14159265358979 * kStep * k);  // stands still at 0, 100, 200, ...
+    always[k] = 0.1 + 0.1 * kStep * k;
+  }
+  const est::LongestSteps longest{1e-3, 2.5e-3};
+  const est::SampleSteps one = est::steps_by_motion({&there_and_back}, kStep, longest);
+  CHECK(one.most() == 5);
+  for (const int rest : {0, 1, 99, 100, 101, 200, 300, samples - 1}) {
+    CHECK(one.of(rest).parts == 5);
+  }
+  for (const int fast : {25, 50, 75, 150, 250, 325}) {
+    CHECK(one.of(fast).parts == 2);
+  }
+  const est::SampleSteps other = est::steps_by_motion({&always}, kStep, longest);
+  CHECK(other.of(100).parts == 2);
+  CHECK(est::steps_by_motion({&always, &there_and_back}, kStep, longest).of(100).parts == 5);
+  CHECK(est::steps_by_motion({&always}, kStep, 1e-3).of(100).parts == 5);
+  const est::SampleSteps quick = est::steps_by_motion({&always}, 1e-3, longest);
+  CHECK(quick.of(100) == est::Pace{1, 2});
+  CHECK(quick.of(samples - 1) == est::Pace{1, 1});
+}
+
+TEST_CASE("a command over several samples: its mean, held or straight, and a delay moves it smoothly") {
+  Eigen::VectorXd volts(6);
+  volts << 1.0, 2.0, 4.0, 3.0, 3.0, 3.0;
+  const auto arriving = [&](est::Hold hold, double at, double late) {
+    est::RecordedVoltage<double> command(volts, hold, late);
+    CHECK(command.begin_step(at, {1, 3}));
+    return command.at(at + 1.0);
+  };
+  CHECK(arriving(est::Hold::previous, 0.0, 0.0) == doctest::Approx((1.0 + 2.0 + 4.0) / 3.0));
+  CHECK(arriving(est::Hold::previous, 1.0, 0.25) == doctest::Approx((0.25 * 1.0 + 2.0 + 4.0 + 0.75 * 3.0) / 3.0));
+  CHECK(arriving(est::Hold::previous, 3.0, 0.0) == doctest::Approx(3.0));
+  CHECK(arriving(est::Hold::linear, 0.0, 0.0) == doctest::Approx((0.5 * 1.0 + 2.0 + 4.0 + 0.5 * 3.0) / 3.0));
+  CHECK(arriving(est::Hold::linear, 1.0, 0.5) == doctest::Approx((0.5 * 1.5 + 3.0 + 3.5 + 0.5 * 3.0) / 3.0));
+  est::RecordedVoltage<double> command(volts, est::Hold::linear, 0.0);
+  command.begin_step(0.0, {1, 3});
+  CHECK(command.begin_step(3.0, {1, 1}));  // the mean before is no more
+  CHECK(command.at(3.0) == doctest::Approx(3.0));
+  CHECK_FALSE(command.begin_step(4.0, {1, 1}));
+}
+
+TEST_CASE("within a step: cubics are met exactly, with their slopes") {
+  using State = sms::TankState<double>;
+  const auto cubic = [](double t, State* rate) {
+    State state;
+    for (int k = 0; k < sms::vector_of(state).size(); ++k) {
+      const double a = 1.0 + k, b = -2.0, c = 0.5 * k, d = 3.0;
+      sms::vector_of(state)[k] = a + t * (b + t * (c + t * d));
+      sms::vector_of(*rate)[k] = b + t * (2.0 * c + t * 3.0 * d);
+    }
+    return state;
+  };
+  State from_rate, to_rate, rate, true_rate;
+  const double h = 0.7;
+  const State from = cubic(0.2, &from_rate), to = cubic(0.2 + h, &to_rate);
+  for (const double share : {0.0, 0.25, 0.6, 1.0}) {
+    const State there = est::within_step(from, from_rate, to, to_rate, share, h, &rate);
+    const State truth = cubic(0.2 + share * h, &true_rate);
+    CHECK((sms::vector_of(there) - sms::vector_of(truth)).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK((sms::vector_of(rate) - sms::vector_of(true_rate)).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("longer steps in motion change readings by far less than their noise, at any rate, slow sensors or not") {
+  for (const double step : {kStep, 1e-3}) {
+    for (const double lag : {0.0, 1.5e-3, 0.02}) {
+      CAPTURE(step);
+      CAPTURE(lag);
+      sms::Params<double> p;
+      p.sensor_lag_extension = lag;
+      p.frame_compliance = 1e-6;
+      const int samples = static_cast<int>(2.0 / step);
+      const Eigen::VectorXd zero = Eigen::VectorXd::Zero(samples);
+      const est::Window window{0, 0, samples, 0, 3 * samples, {}};
+      const double start[est::BenchPlant::kStart] = {0.2, 0.0, 2.6e5, 2.9e5, 4e5, 0.0};
+      const auto readings = [&](const est::BenchRecord& record, const est::LongestSteps& longest) {
+        Eigen::VectorXd out(3 * samples);
+        est::BenchPlant({record}, unit_noise, sms::published_laws(), longest).simulate(p, window, start, out.data());
+        return Eigen::MatrixXd(Eigen::Map<est::RowMatrix>(out.data(), samples, 3));
+      };
+      const Eigen::MatrixXd fine = readings({step, command(samples, step), zero, zero, zero, {}, {}}, 2e-4);
+      const est::BenchRecord record{step, command(samples, step), fine.col(0), fine.col(1), fine.col(2), {}, {}};
+      const est::LongestSteps longest{1e-3, 2.5e-3};
+      const est::SampleSteps steps = est::steps_by_motion({&record.extension}, step, longest);
+      int long_ones = 0;
+      for (int k = 0; k < samples; ++k) {
+        long_ones += steps.of(k) == (step < 2e-3 ? est::Pace{1, 2} : est::Pace{2, 1}) ? 1 : 0;
+      }
+      CHECK(long_ones > samples / 4);
+      const Eigen::MatrixXd off = readings(record, longest).cwiseAbs();
+      CHECK(off.col(0).maxCoeff() < 5e-5);
+      CHECK(off.col(1).maxCoeff() < 150.0);
+      CHECK(off.col(2).maxCoeff() < 150.0);
+      CHECK(off.maxCoeff() > 0.0);
+    }
+  }
 }
 
 TEST_CASE("a record of the model itself leaves nothing, and windows cover it") {
@@ -291,8 +393,8 @@ TEST_CASE("a command that is held: what arrives in a step is its mean, and a del
   Eigen::VectorXd volts(4);
   volts << 1.0, 2.0, 4.0, 3.0;
   const auto arriving = [&](double at, double late) {
-    est::RecordedVoltage<double> command(volts, est::Hold::previous, 10, late);
-    command.begin_step(at);
+    est::RecordedVoltage<double> command(volts, est::Hold::previous, late);
+    command.begin_step(at, {10, 1});
     return command.at(at);
   };
   CHECK(arriving(1.0, 0.0) == doctest::Approx(2.0));

@@ -122,6 +122,45 @@ TEST_CASE("tank: derivatives of a simulation are those of differences, at neutra
   }
 }
 
+TEST_CASE("tank: steps over several samples where the command rests change readings by far less than their noise") {
+  const int samples = 1200;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(samples);
+  Eigen::VectorXd steps_up = Eigen::VectorXd::Constant(samples, 5.0);
+  steps_up.tail(samples - 100).setConstant(5.9);
+  steps_up.tail(samples - 700).setConstant(4.2);
+  const double step = 0.01;
+  const est::LongestSteps longest{2.5e-3, 0.05};
+  const est::SampleSteps cut = est::steps_by_command(steps_up, step, longest);
+  CHECK(cut.of(90) == est::Pace{1, 5});
+  CHECK(cut.of(98) == est::Pace{1, 1});  // a long step does not go over the jump at 100
+  CHECK(cut.of(99) == est::Pace{4, 1});
+  CHECK(cut.of(105) == est::Pace{4, 1});
+  CHECK(cut.of(110) == est::Pace{2, 1});
+  CHECK(cut.of(125) == est::Pace{1, 1});
+  CHECK(cut.of(300) == est::Pace{1, 5});
+  CHECK(cut.of(697) == est::Pace{1, 2});
+  for (const double share : {0.0, 0.8}) {
+    sms::Params<double> p;
+    p.heat_share = share;
+    p.thermocouple_time_constant = 0.3;
+    p.sensor_lag_tank_pressure = 0.013;
+    p.supply_line_resistance = 1e6;
+    const est::Window window{0, 0, samples, 0, kChannels * samples, {}};
+    const double start[est::TankPlant::kStart] = {2e5, 296.0, 4.8e5, 295.0};
+    const auto readings = [&](const est::TankPlantRecord& record, const est::LongestSteps& steps) {
+      Eigen::VectorXd out(kChannels * samples);
+      est::TankPlant({record}, {1.0, 1.0, 1.0}, sms::published_laws(), steps).simulate(p, window, start, out.data());
+      return Eigen::MatrixXd(Eigen::Map<est::RowMatrix>(out.data(), samples, kChannels));
+    };
+    const Eigen::MatrixXd fine = readings({step, steps_up, zero, zero, zero, {}}, 5e-5);
+    const Eigen::MatrixXd off =
+        readings({step, steps_up, fine.col(0), fine.col(1), fine.col(2), {}}, longest).cwiseAbs();
+    CHECK(off.col(0).maxCoeff() < 100.0);
+    CHECK(off.col(1).maxCoeff() < 0.02);
+    CHECK(off.maxCoeff() > 0.0);
+  }
+}
+
 TEST_CASE("tank: heat_share 1 is the full energy equation") {
   sms::Params<double> p;
   p.heat_share = 1.0;

@@ -2759,9 +2759,9 @@ class BenchProblem(Problem):
     """
     Prediction errors over windows, in units of the noise: for each sample of a window, each output.
     """
-    def __init__(self, *, records: collections.abc.Sequence[BenchRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, records: collections.abc.Sequence[BenchRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, longest_step_elsewhere: typing.SupportsFloat | typing.SupportsIndex | None = None, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         """
-        noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and supply_pressure. Hidden inputs: a force, N, and flows into either chamber, kg/s.
+        noise: standard deviation of a sample of extension, chamber_pressure_lower, chamber_pressure_upper and supply_pressure. longest_step: of the integration, s; longest_step_elsewhere: where the recorded extension says that the piston is well on its way; None: the same. Hidden inputs: a force, N, and flows into either chamber, kg/s.
         """
     def errors(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
@@ -2815,9 +2815,9 @@ class TankPlantProblem(Problem):
     """
     Prediction errors over windows, in units of the noise: for each sample of a window, each output.
     """
-    def __init__(self, *, records: collections.abc.Sequence[TankPlantRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, records: collections.abc.Sequence[TankPlantRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], chambers: str = 'polytropic', window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.001, longest_step_elsewhere: typing.SupportsFloat | typing.SupportsIndex | None = None, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         """
-        noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. Hidden inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.
+        noise: standard deviation of a sample of tank_pressure, tank_temperature and supply_pressure. longest_step: of the integration, s; longest_step_elsewhere: where the command has rested for long; None: the same. Hidden inputs: a flow into the tank, kg/s, and a pressure at the head of the supply line, Pa.
         """
     def errors(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
@@ -2973,9 +2973,9 @@ class PlatformProblem:
     """
     Prediction errors over windows, in units of the noise: for each sample of a window, each output.
     """
-    def __init__(self, *, records: collections.abc.Sequence[PlatformRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', masses: typing.SupportsInt | typing.SupportsIndex = 0, window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.0025, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, records: collections.abc.Sequence[PlatformRecord], noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex], friction: str = 'acceleration_dependent', valve: str = 'iso_0_4_mpa', chambers: str = 'polytropic', masses: typing.SupportsInt | typing.SupportsIndex = 0, window: typing.SupportsFloat | typing.SupportsIndex = 1.0, longest_step: typing.SupportsFloat | typing.SupportsIndex = 0.0025, longest_step_elsewhere: typing.SupportsFloat | typing.SupportsIndex | None = None, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         """
-        noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. Hidden inputs: forces on the three pistons, N, and flows into the three lower and the three upper chambers, kg/s.
+        noise: standard deviation of a sample of extension_1 .. 3, chamber_pressure_lower_1 .. 3, chamber_pressure_upper_1 .. 3, supply_pressure, roll and pitch. longest_step: of the integration, s; longest_step_elsewhere: where the recorded extensions say that all pistons are well on their way; None: the same. Hidden inputs: forces on the three pistons, N, and flows into the three lower and the three upper chambers, kg/s.
         """
     def errors(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """

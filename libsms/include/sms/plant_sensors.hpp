@@ -54,6 +54,12 @@ class ActuatorSensors {
 #include "sms/signals.def"
   }
 
+  // From the next look on they are this far apart, s.
+  void look_every(const S& step) {
+#define SMS_LEG_SENSOR(name, ...) name##_.look_every(step);
+#include "sms/signals.def"
+  }
+
   // At the last look.
   template <typename Visit>
   void each(LegSeen<S> leg, int number, const Visit& visit) const {
@@ -92,6 +98,10 @@ class BenchSensors {
   void follow(const Bench<S>& bench, const BenchState<S>& state, const BenchState<S>& rate, const BenchTerms<S>& t) {
     leg_.follow(bench.params, seen(state, rate), mount_force(t));
     supply_.follow(state.actuator.supply_pressure, rate.actuator.supply_pressure);
+  }
+  void look_every(const S& step) {
+    leg_.look_every(step);
+    supply_.look_every(step);
   }
   template <typename Visit>
   void each(const Bench<S>&, const BenchState<S>& state, const BenchState<S>& rate, const BenchTerms<S>&,
@@ -180,6 +190,12 @@ class TankSensors {
 
   // The thermocouple at a temperature of its own at the first look, K.
   void begin(const S& thermocouple) { temperature_.begin(thermocouple); }
+
+  void look_every(const S& step) {
+    pressure_.look_every(step);
+    temperature_.look_every(step);
+    supply_.look_every(step);
+  }
 
   void follow(const Tank<S>& tank, const TankState<S>& state, const TankState<S>& rate, const TankTerms<S>&) {
     pressure_.follow(state.gas.pressure, rate.gas.pressure);

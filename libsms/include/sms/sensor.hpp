@@ -133,6 +133,14 @@ class Sensor {
     }
   }
 
+  // From the next look on they are this far apart, s.
+  void look_every(const S& step) {
+    step_ = step;
+    if (follows_) {
+      weight_ = low_pass_weight<S>(S(1) / errors_.lag, step);
+    }
+  }
+
   // The ends of its range, in the signal's unit: it says no less and no more.
   void limit(const S& lowest, const S& highest) {
     lowest_ = lowest;
