@@ -79,5 +79,5 @@ if picture:
     axes[0].set(ylabel="roll [deg]")
     axes[0].legend()
     axes[1].plot(time, error)
-    axes[1].set(xlabel="time [s]", ylabel="error of the FMUs' roll [deg]")
+    axes[1].set(xlabel="time [s]", ylabel="FMUs less asked for [deg]")
     figure.savefig(picture)

@@ -95,21 +95,29 @@ class Test:
     @property
     def records(self) -> list[own.Record]:
         """Quarters by role, in turn."""
-        lower = float(self.set_point.min())
         edges = [k * len(self.time) // len(STRETCHES) for k in range(len(STRETCHES) + 1)]
-        signals = {
-            "time": self.time,
-            "airway_pressure": self.pressure - lower,
-            "volume": self.volume,
-        }
         return [
             own.Record(
                 f"{self.name} {self.time[a]:.0f} to {self.time[b - 1]:.0f} s",
                 role,
-                {n: v[a:b] for n, v in signals.items()},
+                {n: v[a:b] for n, v in self._signals.items()},
             )
             for role, a, b in zip(STRETCHES, edges[:-1], edges[1:], strict=True)
         ]
+
+    @property
+    def whole(self) -> own.Record:
+        """All of it as one record."""
+        return own.Record(self.name, "test", self._signals)
+
+    @property
+    def _signals(self) -> dict[str, Array]:
+        lower = float(self.set_point.min())
+        return {
+            "time": self.time,
+            "airway_pressure": self.pressure - lower,
+            "volume": self.volume,
+        }
 
 
 def read_tests(folder: Path) -> list[Test]:
