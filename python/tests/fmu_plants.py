@@ -22,15 +22,22 @@ PARAMETERS = {
 
 
 def tanks_fmu(
-    folder: Path, version: int, directional: bool = True, events: int = 0, internal: float = 0.0
+    folder: Path,
+    version: int,
+    directional: bool = True,
+    events: int = 0,
+    internal: float = 0.0,
+    rain: float = 0.0,
+    planned: float = 0.0,
 ) -> Path:
-    """tanks.fmu in a folder; internal: s, of the steps in which it moves. Skips where there is no compiler."""
+    """tanks.fmu in a folder; internal: s, of the steps in which it moves; rain: m^3/s, of a flow that swings with time;
+    planned: s, of an event. Skips where there is no compiler."""
     file = (
         folder / f"tanks{version}{'' if directional else '_plain'}{'_events' if events else ''}.fmu"
     )
     here = "linux64" if version == 2 else "x86_64-linux"
     with zipfile.ZipFile(file, "w") as archive:
-        archive.write(_library(version, internal), f"binaries/{here}/tanks.so")
+        archive.write(_library(version, internal, rain, planned), f"binaries/{here}/tanks.so")
         text = _description(version, directional, events)
         if internal:
             step = f'<DefaultExperiment stepSize="{internal}"/><ModelVariables>'
@@ -40,13 +47,14 @@ def tanks_fmu(
 
 
 @cache
-def _library(version: int, internal: float) -> Path:
+def _library(version: int, internal: float, rain: float, planned: float) -> Path:
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
         pytest.skip("no C compiler here")
     out = Path(mkdtemp()) / f"tanks{version}.so"
     subprocess.run(
-        [compiler, "-O2", "-shared", "-fPIC", f"-DFMI={version}", f"-DINTERNAL={internal}", f"-I{HEADERS}",
+        [compiler, "-O2", "-shared", "-fPIC", f"-DFMI={version}", f"-DINTERNAL={internal}", f"-DRAIN={rain}",
+         f"-DPLANNED={planned}", f"-I{HEADERS}",
          str(HERE / "tanks.c"), str(HERE / "never_called.c"), "-lm", "-o", str(out)],
         check=True,
     )  # fmt: skip

@@ -223,6 +223,25 @@ def test_an_fmu_with_events_is_refused(tmp_path: Path, version: int) -> None:
         Fmu(tanks_fmu(tmp_path, version, events=1))
 
 
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        ({"rain": 1e-6}, "tanks follows time itself"),
+        ({"planned": 30.0}, "tanks has an event at 30 s"),
+    ],
+)
+def test_an_fmu_that_follows_time_itself_is_refused(
+    tmp_path: Path, version: int, made: dict[str, float], said: str
+) -> None:
+    """Its rates were taken at 0 s wherever a window began."""
+    fmu = tanks_fmu(tmp_path, version, rain=made.get("rain", 0.0), planned=made.get("planned", 0.0))
+    rig = rig_file(tmp_path, "healthy", fmu, "model_exchange")
+    with pytest.raises(InputError, match=said) as refused:
+        load_fmu_rig(rig)
+    assert "\n" not in str(refused.value)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

@@ -24,11 +24,22 @@ enum { H1, H2, DER1, DER2, VOLT, Y1, Y2, GAIN, OUT1, OUT2, BAND, LEAK1, LEAK2, G
 typedef struct {
   double v[COUNT];
   double late; /* s, of time that has passed and not been stepped over */
+  double time; /* s, of model exchange */
 } Tanks;
 
 /* s, of the steps in which it moves; 0: of any length. */
 #ifndef INTERNAL
 #define INTERNAL 0.0
+#endif
+
+/* m^3/s, of rain into the upper tank that swings with time itself. */
+#ifndef RAIN
+#define RAIN 0.0
+#endif
+
+/* s, of an event that is planned; 0: none. */
+#ifndef PLANNED
+#define PLANNED 0.0
 #endif
 
 static const double start[COUNT] = {0.05, 0.05, 0, 0, 0, 0, 0, 3.3e-6, 17.8e-6, 17.8e-6};
@@ -38,7 +49,7 @@ static double outflow(double level) { return sqrt(2.0 * 9.81 * fmax(level, 1e-6)
 static void update(Tanks* t) {
   double* v = t->v;
   const double first = outflow(v[H1]), second = outflow(v[H2]);
-  const double pumped = v[GAIN] * fmax(v[VOLT] - v[BAND], 0.0);
+  const double pumped = v[GAIN] * fmax(v[VOLT] - v[BAND], 0.0) + RAIN * sin(t->time);
   v[DER1] = (pumped - (v[OUT1] + v[LEAK1]) * first) / 15.5e-4;
   v[DER2] = (v[OUT1] * first - (v[OUT2] + v[LEAK2]) * second) / 15.5e-4;
   v[Y1] = (1.0 + v[GAIN1]) * v[H1] + v[ZERO1];
@@ -85,6 +96,11 @@ static Status set_states(void* instance, const double* x) {
   return OK;
 }
 
+static Status set_time(void* instance, double time) {
+  ((Tanks*)instance)->time = time;
+  return OK;
+}
+
 static Status get_rates(void* instance, double* rates) {
   update(instance);
   memcpy(rates, ((Tanks*)instance)->v + DER1, 2 * sizeof *rates);
@@ -123,13 +139,13 @@ static Status step(void* instance, double length) {
 static void* made(void) {
   Tanks* t = malloc(sizeof *t);
   memcpy(t->v, start, sizeof start);
-  t->late = 0.0;
+  t->late = t->time = 0.0;
   return t;
 }
 
 static Status begin(void* instance) {
   memcpy(((Tanks*)instance)->v, start, sizeof start);
-  ((Tanks*)instance)->late = 0.0;
+  ((Tanks*)instance)->late = ((Tanks*)instance)->time = 0.0;
   return OK;
 }
 
@@ -157,6 +173,8 @@ API fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return (void)c, OK
 API fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   (void)c;
   memset(info, 0, sizeof *info);
+  info->nextEventTimeDefined = PLANNED > 0.0;
+  info->nextEventTime = PLANNED;
   return OK;
 }
 API fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean a, fmi2Boolean* b, fmi2Boolean* d) {
@@ -164,7 +182,7 @@ API fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean a, fmi2B
   *b = *d = fmi2False;
   return OK;
 }
-API fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) { return (void)c, (void)t, OK; }
+API fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) { return set_time(c, t); }
 API fmi2Status fmi2Terminate(fmi2Component c) { return (void)c, OK; }
 API fmi2Status fmi2Reset(fmi2Component c) { return begin(c); }
 API fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real v[]) {
@@ -223,11 +241,12 @@ API fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) { return (void)c, OK;
 API fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* a, fmi3Boolean* b, fmi3Boolean* d, fmi3Boolean* e,
                                         fmi3Boolean* f, fmi3Float64* g) {
   (void)c;
-  *a = *b = *d = *e = *f = fmi3False;
-  *g = 0.0;
+  *a = *b = *d = *e = fmi3False;
+  *f = PLANNED > 0.0;
+  *g = PLANNED;
   return OK;
 }
-API fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) { return (void)c, (void)t, OK; }
+API fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) { return set_time(c, t); }
 API fmi3Status fmi3Terminate(fmi3Instance c) { return (void)c, OK; }
 API fmi3Status fmi3Reset(fmi3Instance c) { return begin(c); }
 API fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float64 v[], size_t m) {

@@ -28,6 +28,8 @@ Interface = Literal["model_exchange", "co_simulation"]
 MOST_INSTANCES = 64
 """Kept at a time: as many sets of values as a fit asks about together. Run time."""
 FLOATS = ("Real", "Float64")
+NEVER = 1e12
+"""s: what some tools say where no event is planned is later still. Numerics."""
 Kept = TypeVar("Kept")
 
 
@@ -189,6 +191,12 @@ class Fmu:
                 )
                 if not again[0]:
                     break
+            *_, planned, at = again
+            if planned and at < NEVER:
+                raise InputError(
+                    f"{self.file}: {self.description.modelName} has an event at {at:g} s, and a window begins anywhere "
+                    "in a record. Export a model without events at given times, and give what changes then as an input"
+                )
             instance.enterContinuousTimeMode()
 
     @property

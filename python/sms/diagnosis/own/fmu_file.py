@@ -24,7 +24,7 @@
 
 A name is that of the FMU's variable where no `variable` is given; numbers are in the unit that the FMU declares for it,
 or that `unit` says where it declares none.
-docs/own_model.md explains it.
+docs/fmu_plants.md explains it.
 """
 
 from __future__ import annotations

@@ -18,6 +18,8 @@ from sms.diagnosis.own.fmu_calls import Fmu, Names, Pool, in_sets, native_calls
 from sms.diagnosis.own.steps import runge_kutta
 from sms.errors import InputError
 
+LATER = (0.73, 41.9)
+"""s, at which rates are asked for beside those at 0: no period has both."""
 SHORT = 1e-4
 """s: of the step by which co-simulation is asked for a rate."""
 
@@ -60,6 +62,7 @@ class Exchange(_ByName):
     def __init__(self, fmu: Fmu, names: Names, called: tuple[str, ...]) -> None:
         super().__init__(fmu, names, called)
         self.by_state = fmu.directional
+        self._timeless = False
         self._pool = Pool(fmu.most_instances, self._configured)
 
     def _configured(
@@ -68,9 +71,31 @@ class Exchange(_ByName):
         instance = self._fmu.instance() if old is None else old[0]
         try:
             self._fmu.initialised(instance, self._of_values(values))
+        except InputError:
+            raise
         except Exception:  # values that the FMU refuses: a simulation that cannot go on
             return self._fmu.instance(), None
-        return instance, native_calls(self._fmu, instance, self._names)
+        calls = native_calls(self._fmu, instance, self._names)
+        if not self._timeless:
+            self._refuse_time(instance, calls)
+            self._timeless = True
+        return instance, calls
+
+    def _refuse_time(self, instance: Any, calls: _core.FmuCalls) -> None:
+        """InputError for rates or outputs that follow time itself: a window begins anywhere in a record."""
+        x, u = (
+            np.array([[float(self._fmu.variables[n].start or 0.0) for n in names]])
+            for names in (self._names.states, self._names.inputs)
+        )
+        found = []
+        for time in (0.0, *LATER, 0.0):
+            instance.setTime(time)
+            found.append(np.hstack([calls.rates(x, u), calls.readings(x, u)]))
+        if any(not np.array_equal(found[0], other, equal_nan=True) for other in found):
+            raise InputError(
+                f"{self._fmu.file}: {self._fmu.description.modelName} follows time itself, and a window begins anywhere "
+                "in a record; export it with what follows time as an input, and record that"
+            )
 
     def derivative(self, p: Any, x: Array, u: Array) -> Array:
         """(states, n)"""
