@@ -144,3 +144,13 @@ def test_the_group_of_the_definition_is_the_standards() -> None:
     for identifier in (int(i) for i in rng.integers(0, 2**29, 2000)):
         assert _parameter_group(identifier) == pgn_from_frame_id(identifier)
     assert isinstance(cantools.database.load_string(J1939), cantools.database.can.Database)
+
+
+def test_a_definition_that_is_refused_in_several_lines_is_one_sentence(tmp_path: Path) -> None:
+    """A value of a signal that is not there: cantools lists such over lines of their own."""
+    definition = tmp_path / "bus.dbc"
+    definition.write_text(MERGED + 'VAL_ 258 upper 1 "open" 0 "shut" ;\n')
+    with pytest.raises(InputError, match="not a readable DBC file") as refused:
+        load_dbc(definition)
+    assert "258 upper" in str(refused.value)
+    assert "\n" not in str(refused.value)

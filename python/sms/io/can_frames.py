@@ -34,8 +34,9 @@ def load_dbc(path: Path | None = None) -> Database:
         database = cantools.database.load_file(path, database_format="dbc", strict=True)
     except OSError as problem:
         raise InputError(f"{path}: cannot be read ({problem.strerror}); check the path") from None
-    except Exception as problem:  # the parser's errors are of many kinds
-        raise InputError(f"{path}: not a readable DBC file ({problem})") from None
+    except Exception as problem:  # the parser's errors are of many kinds, and of several lines
+        said = " ".join(str(problem).split())
+        raise InputError(f"{path}: not a readable DBC file ({said})") from None
     assert isinstance(database, Database)
     return database
 
