@@ -2,8 +2,8 @@
 
 python -m validation.link.other_logs FOLDER ...
 
-The files are not part of this repository; those that docs/rig_file.md names are the test files of python-can, npTDMS
-and cantools, in the source archives of these packages.
+The files are not part of this repository; those that docs/logs.md names are the test files of python-can, asammdf,
+npTDMS and cantools, in the source archives of these packages.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 python -m validation.reference.other_fmus FILE.fmu ...
 
-Those that docs/fmi.md names are of the FMI project's reference set, built from its sources.
+Those that docs/fmu_plants.md names are of the FMI project's reference set, built from its sources.
 """
 
 from __future__ import annotations
@@ -26,6 +26,10 @@ def run(file: Path, interface: Interface) -> str:
     """The states after 5 s from their start values, and how far fmpy's simulation is from them."""
     fmu = Fmu(file, interface)
     states = [u.variable.derivative.name for u in fmu.description.derivatives]
+    if not states:
+        raise InputError("it has no continuous states")
+    for name in states:
+        fmu.variable(name, "state")
     names = Names(states, [], states, [])
     plant = (Exchange if interface == "model_exchange" else Slave)(fmu, names, ())
     x = np.array([[float(fmu.variables[n].start)] for n in states])
