@@ -256,6 +256,11 @@ def test_an_fmu_that_follows_time_itself_is_refused(
         ("[[effect]]", "[[efect]]", "effect"),
         ('parameter = "leak_upper"', 'parameter = "leak_uper"', "did you mean 'leak_upper'"),
         ('interface = "model_exchange"', 'interface = "both"', "'both' is not known"),
+        (
+            ', unit = "V"',
+            "",
+            "the unit 'V' does not fit; no unit (a plain number) is expected here, or declare a unit",
+        ),
     ],
 )
 def test_a_rig_file_that_does_not_fit_is_said(

@@ -93,8 +93,8 @@ class Exchange(_ByName):
             found.append(np.hstack([calls.rates(x, u), calls.readings(x, u)]))
         if any(not np.array_equal(found[0], other, equal_nan=True) for other in found):
             raise InputError(
-                f"{self._fmu.file}: {self._fmu.description.modelName} follows time itself, and a window begins anywhere "
-                "in a record; export it with what follows time as an input, and record that"
+                f"{self._fmu.file}: {self._fmu.description.modelName} follows time itself, and a window begins "
+                "anywhere in a record; export it with what follows time as an input, and record that"
             )
 
     def derivative(self, p: Any, x: Array, u: Array) -> Array:

@@ -78,9 +78,14 @@ def read_record(
             )
         unit = unit or names[column][1]
         where = f"{path}, column {table.names[column]}"
-        signals[signal.name] = (
-            values if unit is None else array_to_si(values, unit, signal.unit, where)
-        )
+        try:
+            signals[signal.name] = (
+                values if unit is None else array_to_si(values, unit, signal.unit, where)
+            )
+        except InputError as problem:
+            if signal.unit != "1":
+                raise
+            raise InputError(f"{problem}, or declare a unit of {signal.name}") from None
     return Record(name or path.stem, role, signals, conditions or {})
 
 
