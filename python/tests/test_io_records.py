@@ -11,6 +11,7 @@ import pytest
 import scipy.io
 from io_support import PARAMETERS, PLAIN_RIG, Array, healthy_signals, write_rig
 from sms.io import InputError, Record, load_record, load_rig
+from sms.io.table_files import read_table
 
 FOREIGN = """
 [signals]
@@ -214,6 +215,11 @@ GOOD = ",".join(HEADER) + "\n" + lines_of(",")
      ["not a readable .mat"]),
     ("r.parquet", b"", "", ["r.parquet"]),
     ("r.xlsx", b"PK", "", ["'.xlsx' are not read", ".csv"]),
+    ("r.csv", b"Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2\n1,00000123,false,Rx,0,2,11,22\n", "",
+     ["frames of a bus", ".blf"]),
+    ("r.csv", b"TimestampEpoch;BusChannel;ID;DLC;DataBytes\n1.5;1;211;2;1122\n", 'delimiter = "semicolon"',
+     ["frames of a bus", "hexadecimal"]),
+    ("r.csv", b"Timestamp;Type;ID;Data\n1.5;0;123;1122\n", 'delimiter = "semicolon"', ["frames of a bus"]),
 ])  # fmt: skip
 def test_a_file_that_is_no_record_is_said(
     tmp_path: Path, file: str, content: bytes, data: str, words: list[str]
@@ -222,6 +228,12 @@ def test_a_file_that_is_no_record_is_said(
     sentence = failure(tmp_path, rig_text(file, data))
     for word in [str(tmp_path / file), *words]:
         assert word in sentence
+
+
+def test_columns_that_are_no_frames_are_a_table(tmp_path: Path) -> None:
+    for header in ("id,x,y", "time,data,y", "time,d1,d2"):
+        (tmp_path / "r.csv").write_text(f"{header}\n1,2,3\n")
+        assert read_table(tmp_path / "r.csv", "comma", None).names == tuple(header.split(","))
 
 
 def test_a_matlab_file_without_vectors(tmp_path: Path) -> None:

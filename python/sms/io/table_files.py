@@ -179,6 +179,11 @@ def table_of_text(
                 "name the columns in the rig file, [data] columns = [...]"
             )
         columns, numbered = first, numbered[1:]
+        if _are_frames(columns):
+            raise InputError(
+                f"{file}: these are frames of a bus as another program writes them, their bytes in hexadecimal digits; "
+                "save them as .blf, .asc, .trc or candump's .log, which are read with a DBC"
+            )
     elif has_header:
         raise InputError(
             f"{file}, line {numbered[0][0]}: the file has a header line ('{first[0]}' ...); "
@@ -204,6 +209,17 @@ def _split(line: str, delimiter: str) -> list[str]:
     cells = next(csv.reader([line], delimiter=_SEPARATORS[delimiter], skipinitialspace=True))
     cells = [cell.strip() for cell in cells]
     return cells[:-1] if len(cells) > 1 and not cells[-1] else cells
+
+
+_IDENTIFIER = re.compile(
+    r"(?:can|message|msg|arbitration)?[ _]?id(?:entifier)?(?: ?\(hex\))?", re.I
+)
+_BYTES = re.compile(r"(?:data)? ?_?bytes?|data(?: ?\(hex\))?|(?:d|b|byte|data)[ _]?0?[01]", re.I)
+
+
+def _are_frames(names: Sequence[str]) -> bool:
+    """Whether columns are an identifier and the bytes of a frame: as decimal numbers they would be a wrong table."""
+    return any(map(_IDENTIFIER.fullmatch, names)) and any(map(_BYTES.fullmatch, names))
 
 
 LOOKED_AT = 50
