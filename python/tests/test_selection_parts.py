@@ -45,6 +45,18 @@ def test_reference_records_inflate_a_variance_by_what_lasts_through_a_block(weak
     assert 0.5 * expected < found < 2.0 * expected
 
 
+def test_members_that_are_one_equation_are_not_ordered_by_rounding() -> None:
+    def trial(key: str, lower: float) -> Trial:
+        effect = SimpleNamespace(id=key, key=key, parameters=(key,))
+        made = Trial(cast(Any, effect), cast(Any, None), 0.0, np.zeros(1))
+        made.lower = lower
+        return made
+
+    for off in (-1e-12, 0.0, 1e-12):
+        members = [trial("outlet", 0.9), trial("leak", 0.9 + off), trial("late", 0.95)]
+        assert [t.effect.key for t in judgement._plainest(members)] == ["late", "leak", "outlet"]
+
+
 def test_what_is_no_worse_than_the_last_cause_shares_its_class(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

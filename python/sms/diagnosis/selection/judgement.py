@@ -284,8 +284,13 @@ def _similarity(one: Trial, other: Trial, current: Fitted, data: Data) -> float:
 
 
 def _plainest(members: list[Trial]) -> list[Trial]:
-    """Of what cannot be told apart, that with the fewest parameters first; no effect again with more of them."""
-    order = sorted(members, key=lambda t: (len(t.effect.parameters), -t.lower))
+    """Of what cannot be told apart, that with the fewest parameters first; no effect again with more of them.
+
+    Effects that are one and the same equation differ by rounding, which must not order them.
+    """
+    order = sorted(
+        members, key=lambda t: (len(t.effect.parameters), -round(t.lower, 6), t.effect.key)
+    )
     return [
         t
         for t in order
