@@ -45,7 +45,7 @@ void through_window(const SampleSteps& steps, int first, int samples, double rec
   S h(record_step / pace.parts);
   for (int k = 0;; k += pace.samples) {
     Pace next = steps.of(first + k);
-    next.samples = std::min(next.samples, samples - 1 - k);
+    next.samples = std::max(1, std::min(next.samples, samples - 1 - k));
     for (int i = 0; i < next.parts; ++i) {
       const Step step{k, i, next};
       rates(step, state, rate);
