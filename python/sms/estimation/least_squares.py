@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from sms import _core
@@ -33,6 +34,8 @@ SECANTS = 4
 """Steps with one Jacobian, in the mean, before a fit is given up. Run time."""
 MOST_STEPS = 12
 MOST_HALVINGS = 3
+ON_BOUND, ON_EXPECTED = 1e-6, 1e-9
+"""Of a parameter's scale: nearer to a bound it is on it; the second of a bound that is the expected value. Numerics."""
 
 
 class Solution(Protocol):
@@ -108,6 +111,16 @@ class _Objective:
 
     def within(self, value: Array) -> Array:
         return np.asarray(np.clip(value, self.lower, self.upper))
+
+    def at_bound(self, value: Array) -> NDArray[np.bool_]:
+        """(free,) whether a bound holds it.
+
+        One that is the expected value itself does not hold a small share of a range of many decades: a supply line
+        whose pressure loss is a little turbulent is not at the end of what can be.
+        """
+        low = np.where(self.lower < self.centre, ON_BOUND, ON_EXPECTED)
+        high = np.where(self.upper > self.centre, ON_BOUND, ON_EXPECTED)
+        return np.asarray((value <= self.lower + low) | (value >= self.upper - high))
 
     def params(self, value: Array) -> _core.Params:
         low, high = [f.lower for f in self._free], [f.upper for f in self._free]
@@ -202,8 +215,7 @@ def fit_windows(
             break
     if not at.exact and worked_out < most_steps:
         objective.work_out(at, kept)
-    margin = 1e-6
-    held = (at.value <= objective.lower + margin) | (at.value >= objective.upper - margin)
+    held = objective.at_bound(at.value)
     return WindowFit(
         objective.params(at.value),
         np.asarray(at.residual),
