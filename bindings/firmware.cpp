@@ -6,6 +6,7 @@
 #include "application.hpp"
 #include "bind.hpp"
 #include "board_model.hpp"
+#include "sip_key.hpp"
 #include "sms_firmware.h"
 
 namespace sms_python {
@@ -72,6 +73,11 @@ unsigned command_crc(unsigned identifier, unsigned challenge, const py::bytes& d
   return sms::command_crc(frame_of(identifier, data), sms::Word(challenge));
 }
 
+std::uint64_t command_mac(const py::bytes& key, std::uint64_t nonce, unsigned counter, unsigned identifier,
+                          const py::bytes& data) {
+  return fw::command_mac(fw::begin_mac(sip_key(key), nonce), counter, frame_of(identifier, data));
+}
+
 // ---- settings ----
 
 struct Setting {
@@ -102,7 +108,8 @@ struct Outputs {
 
 class Controller {
  public:
-  Controller(const Params& params, const std::map<std::string, double>& settings, int reset_cause, unsigned seed) {
+  Controller(const Params& params, const std::map<std::string, double>& settings, int reset_cause, unsigned seed,
+             const py::bytes& key, std::uint64_t nonce) {
     fw::Parameters p;
     p.machine = sms::cast<float>(params);
     for (const auto& [name, value] : settings) {
@@ -122,6 +129,7 @@ class Controller {
     if (status != SMS_OK) {
       raise_status(status, "a machine with these parameters has no level pose within its stroke");
     }
+    fw::set_key(*app_, sip_key(key), nonce);
   }
 
   Outputs tick(const std::vector<unsigned>& converted, const FrameList& frames, const std::string& characters,
@@ -209,10 +217,14 @@ void bind_application(py::module_& m) {
       .def_readonly("feed_watchdog", &Outputs::feed_watchdog, "whether the board is to restart its watchdog");
   py::class_<Controller>(m, "Controller",
                          "The application of the firmware (libsms/firmware), one call of tick() a control period.")
-      .def(py::init<const Params&, const std::map<std::string, double>&, int, unsigned>(), py::arg("params") = Params(),
-           py::arg("settings") = std::map<std::string, double>(), py::arg("reset_cause") = 0, py::arg("seed") = 0,
+      .def(py::init<const Params&, const std::map<std::string, double>&, int, unsigned, const py::bytes&,
+                    std::uint64_t>(),
+           py::arg("params") = Params(), py::arg("settings") = std::map<std::string, double>(),
+           py::arg("reset_cause") = 0, py::arg("seed") = 0, py::arg("key") = py::bytes(), py::arg("nonce") = 0,
            "As after a reset. settings: values by name (firmware_settings()); reset_cause: 0 power on, 1 watchdog, "
-           "2 request; seed: of the first challenge, another one each time.")
+           "2 request; seed: of the first challenge, another one each time; key: 16 octets, then only authentic "
+           "commands "
+           "are obeyed; nonce: 64 bits that this key never had before.")
       .def("tick", &Controller::tick, py::arg("converted"), py::arg("frames") = FrameList(), py::arg("characters") = "",
            py::arg("enabled") = true, py::arg("bus_off") = false, py::arg("missed_ticks") = 0, py::arg("load") = 0.0,
            "One control period (1 ms). converted: 10 counts of 12 bits, see counts(); frames: at most 8 received ones, "
@@ -267,6 +279,10 @@ void bind_firmware(py::module_& m) {
   m.def("firmware_hash", &sms_parameter_hash, "Hash over params.def and settings.def, params_hash of the bus.");
   m.def("command_crc", &command_crc, py::arg("identifier"), py::arg("challenge"), py::arg("data"),
         "The CRC of a command frame (docs/protocol.md): what its first octet has to be; data are its 8 octets.");
+  m.def("command_mac", &command_mac, py::arg("key"), py::arg("nonce"), py::arg("counter"), py::arg("identifier"),
+        py::arg("data"),
+        "The MAC of a command frame (docs/protocol.md), 40 bits: SipHash-2-4 with a key of 16 octets over nonce, data, "
+        "counter and identifier.");
   m.def("pack_frame", &pack_frame, py::arg("name"), py::arg("values"),
         "The firmware's codec: 8 octets of a frame from its signals; physical ones as float, others as int.");
   m.def("unpack_frame", &unpack_frame, py::arg("name"), py::arg("data"),

@@ -7,6 +7,7 @@
 
 #include "bind.hpp"
 #include "choice.hpp"
+#include "sip_key.hpp"
 
 namespace sms_python {
 namespace {
@@ -29,8 +30,9 @@ RigFault fault_of(const std::string& name) {
 class VirtualRig {
  public:
   VirtualRig(const std::array<Params, 3>& params, double height, double mean_pressure, double step,
-             double position_noise, double pressure_noise, unsigned seed)
+             double position_noise, double pressure_noise, unsigned seed, const py::bytes& key, std::uint64_t nonce)
       : rig_(platform(params), {position_noise, pressure_noise}, seed) {
+    rig_.set_key(sip_key(key), nonce);
     const sms_status status = rig_.begin(height, mean_pressure, step);
     if (status != SMS_OK) {
       raise_status(status, "the virtual rig cannot begin: " + std::string(sms_status_string(status)));
@@ -120,10 +122,13 @@ class VirtualRig {
 void bind_virtual_rig(py::module_& m) {
   py::class_<VirtualRig>(m, "VirtualRig",
                          "The firmware's application over a simulated platform (libsms/firmware/virtual_rig.hpp).")
-      .def(py::init<const std::array<Params, 3>&, double, double, double, double, double, unsigned>(), py::kw_only(),
-           py::arg("params"), py::arg("height"), py::arg("mean_pressure"), py::arg("step"), py::arg("position_noise"),
-           py::arg("pressure_noise"), py::arg("seed"),
-           "params of the plant, one set a leg; height m, mean_pressure Pa, step of the integrator s, noise in counts.")
+      .def(py::init<const std::array<Params, 3>&, double, double, double, double, double, unsigned, const py::bytes&,
+                    std::uint64_t>(),
+           py::kw_only(), py::arg("params"), py::arg("height"), py::arg("mean_pressure"), py::arg("step"),
+           py::arg("position_noise"), py::arg("pressure_noise"), py::arg("seed"), py::arg("key") = py::bytes(),
+           py::arg("nonce") = 0,
+           "params of the plant, one set a leg; height m, mean_pressure Pa, step of the integrator s, noise in counts; "
+           "key: 16 octets, then only authentic commands are obeyed; nonce: 64 bits, others in each run.")
       .def("receive", &VirtualRig::receive, py::arg("identifier"), py::arg("data"),
            "Hand a frame to the controller; False: too many are waiting, it is lost.")
       .def("step", &VirtualRig::step, py::arg("periods"),

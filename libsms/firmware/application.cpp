@@ -108,6 +108,10 @@ sms_status reset_with(Application& app, const Parameters& parameters, ResetCause
   return SMS_OK;
 }
 
+void set_key(Application& app, const SipKey& key, Octets8 board_nonce) {
+  set_key(app.authentication, key, board_nonce);
+}
+
 void tick(Application& app, const sms_hardware_inputs& in, sms_hardware_outputs& out) {
   out.frame_count = 0;
   out.character_count = 0;

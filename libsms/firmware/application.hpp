@@ -12,6 +12,7 @@
 // it.
 #pragma once
 
+#include "authentication.hpp"
 #include "capture.hpp"
 #include "command_link.hpp"
 #include "console.hpp"
@@ -84,6 +85,7 @@ struct Application {
   bool limit_noted;
 
   CommandLink link;
+  Authentication authentication;  // off until set_key
   Faults faults;
   Long known_faults;  // that the log knows of
   Fault first_fault;
@@ -104,6 +106,9 @@ void reset(Application& app, ResetCause cause, Word seed);
 
 // As reset, with parameters of the caller; SMS_OK, or what is wrong with them, and then nothing is touched.
 sms_status reset_with(Application& app, const Parameters& parameters, ResetCause cause, Word seed);
+
+// From here on commands of the bus need an authenticator; after each reset. A key of zeros: they need none.
+void set_key(Application& app, const SipKey& key, Octets8 board_nonce);
 
 // One control period.
 void tick(Application& app, const sms_hardware_inputs& in, sms_hardware_outputs& out);

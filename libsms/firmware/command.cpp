@@ -169,7 +169,25 @@ bool is_stop(const Frame& f) {
          s.mode_request == Long(Mode::disabled) && s.acknowledge == 0u && s.control_law_request == 0u;
 }
 
+// Counted and reported as a frame whose CRC is wrong, or whose counter is; the log has one a second, so that a flood does
+// not wash it out.
+void refuse_as_not_authentic(Application& app, Authenticity why) {
+  CommandLink& link = app.link;
+  Word& count = why == Authenticity::wrong_mac     ? link.corrupted
+                : why == Authenticity::old_counter ? link.out_of_sequence
+                                                   : link.refused;
+  count = Word(count + 1);
+  report(app.faults, Fault::link_disturbed);
+  if (app.now - app.authentication.noted >= Long(refusal_period)) {
+    app.authentication.noted = app.now;
+    note(app, EventKind::not_authentic, Word(why));
+  }
+}
+
 void receive_one(Application& app, const Frame& f, sms_hardware_outputs& out) {
+  if (f.identifier == Word(frame::CommandAuthenticator::identifier)) {
+    return app.authentication.on ? keep_authenticator(app.authentication, f, app.now) : void();
+  }
   const int number = command_number(f.identifier);
   if (number < 0) {
     return;
@@ -179,6 +197,12 @@ void receive_one(Application& app, const Frame& f, sms_hardware_outputs& out) {
   if (!check_frame(link, f)) {
     report(app.faults, Fault::link_disturbed);
     return;
+  }
+  if (app.authentication.on) {
+    const Authenticity authenticity = check_authentic(app.authentication, f, app.now);
+    if (authenticity != Authenticity::authentic) {
+      return refuse_as_not_authentic(app, authenticity);
+    }
   }
   if (is_stop(f)) {
     request_mode(app, Mode::disabled, Reason::request);
@@ -219,6 +243,7 @@ void receive_one(Application& app, const Frame& f, sms_hardware_outputs& out) {
 }  // namespace
 
 void receive(Application& app, const sms_hardware_inputs& in, sms_hardware_outputs& out) {
+  app.authentication.checks = 0;
   for (int i = 0; i < SMS_FRAMES_IN && i < int(in.frame_count); ++i) {
     receive_one(app, in.frames[i], out);
   }

@@ -1,6 +1,6 @@
 /* What the application wants from a board, and all it ever touches: values in, values out, once a control period.
  *
- * A board brings five functions and a timer. The desk brings the same two structs from a simulated plant, so that
+ * A board brings six functions and a timer. The desk brings the same two structs from a simulated plant, so that
  * firmware, emulated firmware and virtual rig run one application. No type of 8 bits: a C28x has none. */
 #ifndef SMS_FIRMWARE_HARDWARE_H
 #define SMS_FIRMWARE_HARDWARE_H
@@ -49,6 +49,11 @@ uint_least16_t hardware_start(void);
 
 /* Any number that differs from one reset to the next. */
 uint_least16_t hardware_seed(void);
+
+/* The key with which commands on the bus are authenticated, 16 octets, and 8 octets that this board never had before: from
+ * a generator of random numbers, or a count of resets in memory that keeps it. Octet 0 lowest in word 0. Returns 0 when
+ * there is no key: the bus is open. The key stays in the board: nothing reads it out. */
+int hardware_key(uint_least32_t key[4], uint_least32_t nonce[2]);
 
 /* Waits for the next period and fills everything; 0 ends the main loop, which only an emulated board does. */
 int hardware_read(sms_hardware_inputs *inputs);

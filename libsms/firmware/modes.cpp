@@ -119,6 +119,9 @@ void take_control_by(Application& app, Word session) {
 void give_up_control(Application& app) {
   note(app, EventKind::control_released, app.link.session);
   release_control(app.link, app.now);
+  if (app.authentication.on) {
+    draw_nonce(app.authentication);
+  }
   app.parameters.open = false;
   app.target.fresh = false;
 }

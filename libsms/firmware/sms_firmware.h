@@ -19,6 +19,9 @@ unsigned long sms_application_size(void);
 /* Everything as after a reset. cause: value table ResetCause of sms.dbc; seed: any number, another one each time. */
 void sms_application_reset(sms_application *application, uint_least16_t cause, uint_least16_t seed);
 
+/* After each reset, where commands on the bus are to be authenticated; as hardware_key() of hardware.h. */
+void sms_application_set_key(sms_application *application, const uint_least32_t key[4], const uint_least32_t nonce[2]);
+
 /* One control period: 1 ms. */
 void sms_application_tick(sms_application *application, const sms_hardware_inputs *in, sms_hardware_outputs *out);
 

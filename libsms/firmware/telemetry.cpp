@@ -123,6 +123,11 @@ void send(Application& app, sms_hardware_outputs& out) {
                                                    parameter_hash(), Long(protocol_version), Long(app.reset_cause)}));
     app.heartbeats = Word(app.heartbeats + 1);
   }
+  Authentication& a = app.authentication;
+  if (a.on && (!a.told || app.now % heartbeat_period == 0u)) {
+    put_frame(out, pack(frame::SessionNonce{Long(a.nonce & 0xFFFFFFFFu), Long(a.nonce >> 32)}));
+    a.told = true;
+  }
   const bool due = app.now % telemetry_period == 0u;
   for (int i = 0; i < telemetry_frames; ++i) {
     if (due || (i == 1 && app.target.waiting)) {

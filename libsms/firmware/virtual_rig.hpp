@@ -69,6 +69,13 @@ class VirtualRig {
     return begun;
   }
 
+  // Its controller obeys authentic commands only (authentication.hpp); a key of zeros: any.
+  void set_key(const SipKey& key, Octets8 nonce) {
+    key_ = key;
+    nonce_ = nonce;
+    firmware::set_key(app_, key_, nonce_);
+  }
+
   // False when too many are waiting already: the frame is lost, as on a controller with full mailboxes.
   bool receive(const sms_frame& frame) {
     const bool taken = waiting_.size() < queue_length;
@@ -201,6 +208,7 @@ class VirtualRig {
     silence_ = 0;
     clear_fault(RigFault::hang);
     reset(app_, ResetCause::watchdog, draw_seed());
+    firmware::set_key(app_, key_, ++nonce_);
     for (uint_least16_t& width : out_.pulse_width) {
       width = uint_least16_t(0.5 * board_.pwm_steps);
     }
@@ -221,6 +229,8 @@ class VirtualRig {
   std::mt19937 random_;
   std::normal_distribution<double> normal_;
   Application app_;
+  SipKey key_{0, 0};
+  Octets8 nonce_ = 0;  // the board's, another one with each reset
   sms_hardware_inputs in_{};
   sms_hardware_outputs out_{};
   std::deque<sms_frame> waiting_;

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Calibration', 'Channel', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'FmuCalls', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParallelMechanism', 'ParameterInfo', 'Params', 'PlatformBody', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'PoseProblem', 'Problem', 'SignalInfo', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'calibrate', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'signal_table', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'uses_avx2', 'valve_command', 'valve_mass_flow', 'valve_table']
+__all__: list[str] = ['BenchEquations', 'BenchLoopProblem', 'BenchProblem', 'BenchRecord', 'BenchSimulation', 'Calibration', 'Channel', 'Controller', 'ControllerOutputs', 'CylinderProblem', 'CylinderRecord', 'FirmwareSetting', 'Fit', 'FmuCalls', 'LegParams', 'NotANumberError', 'NotConvergedError', 'OutOfRangeError', 'OutOfWorkspaceError', 'ParallelMechanism', 'ParameterInfo', 'Params', 'PlatformBody', 'PlatformEquations', 'PlatformLoopProblem', 'PlatformProblem', 'PlatformRecord', 'PlatformSimulation', 'PoseProblem', 'Problem', 'SignalInfo', 'SpoolProblem', 'SpoolRecord', 'StatusError', 'TankEquations', 'TankPlantProblem', 'TankPlantRecord', 'TankProblem', 'TankSimulation', 'VirtualRig', 'Window', 'air_spring', 'alpha_beta', 'build_info', 'calibrate', 'carried_points', 'chamber_energy_rates', 'chamber_pressure_rate', 'chamber_volume', 'charge_flow', 'chirp', 'chirp_frequency', 'classic_mass_flow', 'closed_loop', 'command_crc', 'command_mac', 'conditioning', 'dac_filter', 'dead_band_coefficient', 'dead_band_gain', 'discharge_flow', 'dynamics_terms', 'firmware_hash', 'firmware_settings', 'fit', 'force_balance', 'force_range', 'force_share', 'forward_dynamics', 'forward_kinematics', 'forward_motion', 'frequency_response', 'friction', 'friction_stribeck', 'gains_situm', 'gains_specification_based', 'has_estimation', 'inverse_dynamics', 'inverse_kinematics', 'inverse_motion', 'is_stable', 'iso_mass_flow', 'jacobian', 'joint_angles', 'largest_angle', 'largest_stable_gain', 'linearise', 'mass_models', 'orifice_area', 'over_dead_band', 'pack_frame', 'parameter_table', 'pid', 'poles', 'pose_jacobian', 'pulse_width_voltage', 'raise_status', 'reach', 'rectangle_margin', 'reservoir_pressure_rate', 'rod_force', 'sampled_extension', 'signal_table', 'simplified_plant', 'six_leg_inverse', 'sonic_conductance', 'spool_cubic', 'spool_linear', 'state_feedback', 'status_string', 'stroke_margin', 'tank_pressure_rate', 'thermocouple_temperature', 'tube_delay', 'tube_transmission', 'unpack_frame', 'uses_avx2', 'valve_command', 'valve_mass_flow', 'valve_table']
 class StatusError(ValueError):
     """
     A call into the core failed; nothing was changed.
@@ -2547,9 +2547,9 @@ class Controller:
     """
     The application of the firmware (libsms/firmware), one call of tick() a control period.
     """
-    def __init__(self, params: Params = ..., settings: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, reset_cause: typing.SupportsInt | typing.SupportsIndex = 0, seed: typing.SupportsInt | typing.SupportsIndex = 0) -> None:
+    def __init__(self, params: Params = ..., settings: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, reset_cause: typing.SupportsInt | typing.SupportsIndex = 0, seed: typing.SupportsInt | typing.SupportsIndex = 0, key: bytes = b'', nonce: typing.SupportsInt | typing.SupportsIndex = 0) -> None:
         """
-        As after a reset. settings: values by name (firmware_settings()); reset_cause: 0 power on, 1 watchdog, 2 request; seed: of the first challenge, another one each time.
+        As after a reset. settings: values by name (firmware_settings()); reset_cause: 0 power on, 1 watchdog, 2 request; seed: of the first challenge, another one each time; key: 16 octets, then only authentic commands are obeyed; nonce: 64 bits that this key never had before.
         """
     def counts(self, extension: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], chamber_pressure_lower: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], chamber_pressure_upper: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], supply_pressure: typing.SupportsFloat | typing.SupportsIndex) -> list[int]:
         """
@@ -2602,9 +2602,9 @@ class VirtualRig:
     """
     The firmware's application over a simulated platform (libsms/firmware/virtual_rig.hpp).
     """
-    def __init__(self, *, params: typing.Annotated[collections.abc.Sequence[Params], "FixedSize(3)"], height: typing.SupportsFloat | typing.SupportsIndex, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex, position_noise: typing.SupportsFloat | typing.SupportsIndex, pressure_noise: typing.SupportsFloat | typing.SupportsIndex, seed: typing.SupportsInt | typing.SupportsIndex) -> None:
+    def __init__(self, *, params: typing.Annotated[collections.abc.Sequence[Params], "FixedSize(3)"], height: typing.SupportsFloat | typing.SupportsIndex, mean_pressure: typing.SupportsFloat | typing.SupportsIndex, step: typing.SupportsFloat | typing.SupportsIndex, position_noise: typing.SupportsFloat | typing.SupportsIndex, pressure_noise: typing.SupportsFloat | typing.SupportsIndex, seed: typing.SupportsInt | typing.SupportsIndex, key: bytes = b'', nonce: typing.SupportsInt | typing.SupportsIndex = 0) -> None:
         """
-        params of the plant, one set a leg; height m, mean_pressure Pa, step of the integrator s, noise in counts.
+        params of the plant, one set a leg; height m, mean_pressure Pa, step of the integrator s, noise in counts; key: 16 octets, then only authentic commands are obeyed; nonce: 64 bits, others in each run.
         """
     def clear_fault(self, name: str) -> None:
         ...
@@ -3105,6 +3105,10 @@ def closed_loop(velocity_gain: typing.SupportsFloat | typing.SupportsIndex, natu
 def command_crc(identifier: typing.SupportsInt | typing.SupportsIndex, challenge: typing.SupportsInt | typing.SupportsIndex, data: bytes) -> int:
     """
     The CRC of a command frame (docs/protocol.md): what its first octet has to be; data are its 8 octets.
+    """
+def command_mac(key: bytes, nonce: typing.SupportsInt | typing.SupportsIndex, counter: typing.SupportsInt | typing.SupportsIndex, identifier: typing.SupportsInt | typing.SupportsIndex, data: bytes) -> int:
+    """
+    The MAC of a command frame (docs/protocol.md), 40 bits: SipHash-2-4 with a key of 16 octets over nonce, data, counter and identifier.
     """
 def conditioning(params: Params, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
     """

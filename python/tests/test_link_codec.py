@@ -96,6 +96,8 @@ def test_every_command_is_protected_and_no_name_means_two_things() -> None:
     senders = {**sent_by(HOST), **sent_by(CONTROLLER)}
     assert len(senders) == len(bus_definition().messages)
     for message in sent_by(HOST).values():
+        if message.name == "CommandAuthenticator":  # it protects them
+            continue
         assert [signal.name for signal in message.signals][:3] == list(CHECKED), message.name
     units: dict[str, str | None] = {}
     for message in bus_definition().messages:

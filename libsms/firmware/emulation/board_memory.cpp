@@ -10,6 +10,8 @@ struct Registers {
   volatile uint_least16_t pulse_width[SMS_LEGS];
   volatile uint_least16_t enabled, bus_off, watchdog, seed, reset_cause;
   volatile uint_least16_t received, receiver, sent, transmitter;
+  volatile uint_least32_t key[4], resets;  // in memory that keeps them
+  volatile uint_least16_t has_key;
   sms_frame mailbox;
 };
 
@@ -22,6 +24,15 @@ extern "C" {
 uint_least16_t hardware_start(void) { return registers.reset_cause; }
 
 uint_least16_t hardware_seed(void) { return registers.seed; }
+
+int hardware_key(uint_least32_t key[4], uint_least32_t nonce[2]) {
+  for (int i = 0; i < 4; ++i) {
+    key[i] = registers.key[i];
+  }
+  nonce[0] = registers.resets;
+  nonce[1] = 0;
+  return int(registers.has_key);
+}
 
 int hardware_read(sms_hardware_inputs* inputs) {
   while (registers.tick == 0) {

@@ -67,6 +67,11 @@ void codec() {
     sms::unpack(f, s);
     float_sink = s.roll_setpoint + s.height_setpoint;
   });
+  const sms::SipState begun = fw::begin_mac({1, 2}, 3);
+  count("MAC of a command frame (SipHash-2-4)", [&] {
+    f.octet[3] = Word((f.octet[3] + 1u) & 0xFFu);
+    word_sink = Word(fw::command_mac(begun, f.octet[3], f) & 0xFFu);
+  });
   sms::frame::ChamberPressureLower p = {386e3f, 386e3f, 386e3f, 1};
   count("pack telemetry", [&] {
     p.chamber_pressure_lower_2 = 386e3f + 1e5f * any();

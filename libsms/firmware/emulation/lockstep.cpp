@@ -53,9 +53,17 @@ struct Machine {
 
 // ---- the application, here or there ----
 
+sms::SipKey whole_key() {
+  const auto joined = [](int i) { return sms::Octets8(lockstep_key[i]) | (sms::Octets8(lockstep_key[i + 1]) << 32); };
+  return {joined(0), joined(2)};
+}
+
 struct Here {
   std::unique_ptr<fw::Application> app = std::make_unique<fw::Application>();
-  Here() { fw::reset(*app, sms::ResetCause::power_on, 1); }
+  Here() {
+    fw::reset(*app, sms::ResetCause::power_on, 1);
+    fw::set_key(*app, whole_key(), 0);
+  }
   bool tick(const sms_hardware_inputs& in, FromTarget& out) {
     fw::tick(*app, in, out.outputs);
     return true;
@@ -95,6 +103,20 @@ void schedule(bench::Host& host, long k) {
   if (k == level_time) host.request(sms::Mode::excitation);
 }
 
+// Every third period somebody without the key fills the mailboxes behind the host's frames: four authenticators, and as
+// many set-points as still go in, each of which fits all four. It costs the controller the most, and moves nothing.
+void flood(const bench::Host& host, long k, sms_hardware_inputs& in) {
+  if (k < 100 || k % 3 != 0) return;
+  sms::Frame setpoint = sms::pack(sms::frame::AttitudeSetpoint{0, host.session, 0.1f, 0.1f, 0.5f});
+  sms::seal(setpoint, host.challenge);
+  for (sms::Long i = 0; in.frame_count < SMS_FRAMES_IN; ++i) {
+    in.frames[in.frame_count++] =
+        i < 4 ? sms::pack(sms::frame::CommandAuthenticator{(host.counter + 1u + i) & 0xFFFu, host.session,
+                                                           setpoint.octet[0], sms::Long(k), i})
+              : setpoint;
+  }
+}
+
 uint32_t hash_of(const sms_hardware_outputs& out) {
   uint32_t hash = 0x811C9DC5u;
   const auto add = [&hash](unsigned word) { hash = (hash ^ word) * 0x01000193u; };
@@ -110,6 +132,8 @@ int run(Application& application, FILE* file) {
   Machine machine;
   if (machine.begin() != SMS_OK) return 1;
   bench::Host host;
+  host.authenticates = true;
+  host.key = whole_key();
   const fw::Parameters parameters;
   sms_hardware_inputs in = {};
   FromTarget out = {};
@@ -122,6 +146,7 @@ int run(Application& application, FILE* file) {
     in.frame_count = 0;
     for (const sms::Frame& f : host.out) in.frames[in.frame_count++] = f;
     host.out.clear();
+    flood(host, k, in);
     if (!application.tick(in, out)) return 1;
     for (int i = 0; i < int(out.outputs.frame_count); ++i) {
       const sms::Frame& f = out.outputs.frames[i];

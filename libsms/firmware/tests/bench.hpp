@@ -53,6 +53,18 @@ struct Host {
   bool heartbeats = true, setpoints = true;
   sms::Long hash = fw::parameter_hash();
   std::vector<Frame> out;
+  bool authenticates = false;
+  sms::SipKey key = {0, 0};
+  sms::Octets8 nonce = 0;
+  sms::Long counter = 0;  // of the last authenticator
+
+  // What goes before a command frame.
+  Frame authenticator(const Frame& f) {
+    counter += 1u;
+    const sms::Octets8 mac = fw::command_mac(fw::begin_mac(key, nonce), counter, f);
+    return sms::pack(sms::frame::CommandAuthenticator{counter & 0xFFFu, sms::Long(f.octet[1] >> 4), f.octet[0],
+                                                      sms::Long(mac & 0xFFFFFFFFu), sms::Long(mac >> 32)});
+  }
 
   template <typename Kind>
   Frame sealed(Kind s) {
@@ -66,7 +78,9 @@ struct Host {
   }
   template <typename Kind>
   void send(const Kind& s) {
-    out.push_back(sealed(s));
+    const Frame f = sealed(s);
+    if (authenticates) out.push_back(authenticator(f));
+    out.push_back(f);
     ++sent;
   }
   void request(Mode mode, bool acknowledge = false, sms::Long law = 0) {
@@ -92,6 +106,12 @@ struct Host {
       challenge = Word(s.challenge);
       synchronised = true;
     }
+    sms::frame::SessionNonce n;
+    if (f.identifier == Word(sms::frame::SessionNonce::identifier) && sms::unpack(f, n)) {
+      const sms::Octets8 said = n.nonce_low | (sms::Octets8(n.nonce_high) << 32);
+      counter = said == nonce ? counter : 0u;
+      nonce = said;
+    }
   }
 };
 
@@ -114,6 +134,13 @@ struct Bench {
   double worst_rate = 0.0, worst_acceleration = 0.0, least = 1.0, most = 0.0;  // of the set-points
 
   explicit Bench(sms::ResetCause cause = sms::ResetCause::power_on) { fw::reset(*app, cause, 17); }
+
+  // The controller gets a key, and the host may have another.
+  void authenticate(const sms::SipKey& controllers, const sms::SipKey& hosts) {
+    fw::set_key(*app, controllers, 1);
+    host.authenticates = true;
+    host.key = hosts;
+  }
 
   void step() {
     host.live(k);

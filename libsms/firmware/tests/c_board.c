@@ -11,6 +11,7 @@ int main(void) {
   static sms_hardware_inputs in;
   static sms_hardware_outputs out;
   sms_application *application = (sms_application *)memory;
+  const uint_least32_t key[4] = {1, 2, 3, 4}, nonce[2] = {5, 6};
   int i, k, frames = 0;
 
   if (sms_application_size() > sizeof memory) return 1;
@@ -27,5 +28,11 @@ int main(void) {
   }
   printf("%d frames, mode %d, faults %lx, %lu chars\n", frames, sms_application_mode(application),
          (unsigned long)sms_application_faults(application), sms_application_size());
-  return frames > 600 && sms_application_faults(application) == 0 ? 0 : 3;
+  if (frames <= 600 || sms_application_faults(application) != 0) return 3;
+  sms_application_set_key(application, key, nonce); /* from here on its nonce is told, at once */
+  sms_application_tick(application, &in, &out);
+  for (i = 0; i < (int)out.frame_count; ++i) {
+    if (out.frames[i].identifier == 0x103) return 0;
+  }
+  return 4;
 }

@@ -16,11 +16,15 @@ from sms.cli.can_bus import (
     Bitrate,
     Channel,
     Interface,
+    KeyFile,
     Seconds,
+    key_of,
     linked,
     open_address,
     progress_bar,
     recording,
+    say_open,
+    take_control,
 )
 from sms.cli.columns import Columns, columns_of
 from sms.errors import InputError
@@ -81,6 +85,7 @@ def drive(
     interface: Interface = VIRTUAL,
     channel: Channel = None,
     bitrate: Bitrate = DEFAULT_BITRATE,
+    key_file: KeyFile = None,
     scale: Annotated[float, typer.Option(help="Excursions from level, times this.")] = 1.0,
     rate: Annotated[
         float | None,
@@ -103,12 +108,12 @@ def drive(
     wanted = read_motion(motion, columns=columns_of(column)).scaled(scale)
     check_motion(wanted)
     with (
-        linked(interface, channel, bitrate) as link,
+        linked(interface, channel, bitrate, key_file) as link,
         recording(link, record),
         progress_bar() as bar,
     ):
         task = bar.add_task("connecting", total=1.0)
-        link.connect()
+        take_control(link, interface)
         try:
             streamed = stream(
                 link,
@@ -133,6 +138,7 @@ def get(
     interface: Interface = VIRTUAL,
     channel: Channel = None,
     bitrate: Bitrate = DEFAULT_BITRATE,
+    key_file: KeyFile = None,
     changed: Annotated[
         bool, typer.Option("--changed", help="Only those that are not at their default.")
     ] = False,
@@ -146,8 +152,8 @@ def get(
     )
 
     wanted = [known_parameter(name) for name in names or known_parameters()]
-    with linked(interface, channel, bitrate) as link:
-        link.connect()
+    with linked(interface, channel, bitrate, key_file) as link:
+        take_control(link, interface)
         for parameter in wanted:
             value = read_parameter(link, parameter.name)
             if not changed or not is_default(parameter.name, value):
@@ -168,6 +174,7 @@ def set_(
     interface: Interface = VIRTUAL,
     channel: Channel = None,
     bitrate: Bitrate = DEFAULT_BITRATE,
+    key_file: KeyFile = None,
     disable: Annotated[
         bool,
         typer.Option(
@@ -183,8 +190,8 @@ def set_(
     from sms.link.parameters import parse_setting, write_parameters  # noqa: PLC0415
 
     values = dict(parse_setting(setting) for setting in settings)
-    with linked(interface, channel, bitrate) as link:
-        link.connect()
+    with linked(interface, channel, bitrate, key_file) as link:
+        take_control(link, interface)
         if disable:
             link.request_mode("disabled")
         for name, value in write_parameters(link, values).items():
@@ -200,6 +207,7 @@ def rig(
     interface: Interface = "udp_multicast",
     channel: Channel = None,
     bitrate: Bitrate = DEFAULT_BITRATE,
+    key_file: KeyFile = None,
     effect: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME=VALUE", help="A parameter of the plant alone; may be repeated."),
@@ -233,7 +241,9 @@ def rig(
             "a virtual bus ends at this process, so nobody could talk to this rig; "
             "use --interface udp_multicast, or leave sms can rig out: the other commands start one of their own"
         )
-    machine = VirtualRig(effects=effect or [], faults=fault or [], seed=seed)
+    machine = VirtualRig(effects=effect or [], faults=fault or [], seed=seed, key=key_of(key_file))
+    if key_file is None:
+        say_open()
     with open_address(interface, channel, bitrate) as bus:
         console = Console(stderr=True, quiet=quiet)
         with (

@@ -37,10 +37,19 @@ Channel = Annotated[
 Bitrate = Annotated[
     int, typer.Option(envvar="CAN_BITRATE", help="Of a real bus, bit/s; the rig's is 500000.")
 ]
+KeyFile = Annotated[
+    Path | None,
+    typer.Option(
+        envvar="CAN_KEY_FILE",
+        help="The rig's key, a file of 32 hexadecimal digits: commands are authenticated with it. Without: the bus is "
+        "open.",
+    ),
+]
 Seconds = Annotated[float | None, typer.Option(help="Stop after so many seconds.")]
 
 VIRTUAL, DEFAULT_BITRATE = "virtual", 500_000
 FAILED = 1
+OPEN_BUS = "this bus is open: whoever is on it can command the rig; a key closes it (--key-file)"
 
 
 @contextmanager
@@ -71,12 +80,38 @@ def ended_like_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
+def key_of(file: Path | None) -> bytes | None:
+    """The key in a file; says on the error output when others may read it."""
+    from sms.link.key_file import read_key, readable_by_others  # noqa: PLC0415
+
+    if file is None:
+        return None
+    key = read_key(file)
+    if (warning := readable_by_others(file)) is not None:
+        print(f"sms: {warning}", file=sys.stderr)
+    return key
+
+
+def say_open() -> None:
+    print(f"sms: {OPEN_BUS}", file=sys.stderr)
+
+
+def take_control(link: RigLink, interface: str) -> None:
+    """Connect; without a key, say that everybody could. A virtual bus ends at this process: nobody else is on it."""
+    link.connect()
+    if link.sender.key is None and interface != VIRTUAL:
+        say_open()
+
+
 @contextmanager
-def linked(interface: str, channel: str | None, bitrate: int) -> Iterator[RigLink]:
-    """A link with the rig on a bus; on a virtual bus a virtual rig is started with it."""
+def linked(
+    interface: str, channel: str | None, bitrate: int, key_file: Path | None = None
+) -> Iterator[RigLink]:
+    """A link with the rig on a bus; on a virtual bus a virtual rig is started with it, and has the same key."""
     from sms.link.rig_link import RigLink  # noqa: PLC0415
 
-    with open_address(interface, channel, bitrate) as bus, RigLink(bus) as link:
+    key = key_of(key_file)
+    with open_address(interface, channel, bitrate) as bus, RigLink(bus, key=key) as link:
         if interface != VIRTUAL:
             yield link
             return
@@ -87,7 +122,7 @@ def linked(interface: str, channel: str | None, bitrate: int) -> Iterator[RigLin
         print("virtual bus: a virtual rig runs in this process", file=sys.stderr)
         with (
             open_bus(BusAddress(interface, channel)) as other_end,
-            running(VirtualRig(), other_end),
+            running(VirtualRig(key=key), other_end),
         ):
             yield link
 

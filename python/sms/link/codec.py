@@ -3,12 +3,13 @@
 Command frames carry an alive counter, the session of the desk that sends them, and a CRC-8 which
 also covers the identifier and the controller's challenge; docs/protocol.md says what each is for.
 Signals are packed by cantools, by which the firmware's own codec is tested; the CRC is the core's.
+Where the controller has a key, an authenticator goes before each command; its MAC is the core's too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 
 import can
@@ -21,7 +22,7 @@ from sms.io.can_frames import load_dbc, no_value
 
 HOST, CONTROLLER = "Host", "Controller"
 CHECKED = ("crc", "alive", "session")  #: the signals that protect a command frame
-_ALIVE_MODULUS = 16
+_ALIVE_MODULUS, _FRESHNESS_MODULUS = 16, 4096
 
 Value = float | int | str  #: a signal's value; the name where the DBC names values
 
@@ -89,10 +90,40 @@ class Sender:
 
     session: int  #: 1 to 14
     challenge: int = 0  #: the last one that the controller's heartbeat told
+    key: bytes | None = field(
+        default=None, repr=False
+    )  #: 16 octets; None: nothing is authenticated
+    nonce: int = 0  #: the last one that the controller told; only one with a key does
 
     def __post_init__(self) -> None:
         """Counters start at zero."""
         self._alive: dict[int, int] = {}
+        self._counter = 0
+
+    def hear_nonce(self, nonce: int) -> None:
+        """Authenticate for this nonce; with another one the counter begins anew."""
+        if nonce != self.nonce:
+            self.nonce, self._counter = nonce, 0
+
+    def authenticator(self, frame: can.Message) -> can.Message:
+        """What has to go before a command frame on the bus of a controller with a key."""
+        assert self.key is not None, "only a desk with a key authenticates"
+        self._counter += 1
+        data, number = bytes(frame.data), frame.arbitration_id
+        mac = _core.command_mac(self.key, self.nonce, self._counter, number, data)
+        described = message("CommandAuthenticator")
+        values = {
+            "freshness": self._counter % _FRESHNESS_MODULUS,
+            "session": self.session,
+            "command_crc": data[0],
+            "mac_low": mac & 0xFFFFFFFF,
+            "mac_high": mac >> 32,
+        }
+        return can.Message(
+            arbitration_id=described.frame_id,
+            is_extended_id=False,
+            data=_encoded(described, values),
+        )
 
     def frame(self, name: str, signals: Mapping[str, Value] | None = None) -> can.Message:
         """A command frame with counter and CRC; reserved bits are zero.

@@ -12,7 +12,7 @@ import random
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import TracebackType
 
 import can
@@ -33,6 +33,7 @@ from sms.link.codec import (
 PROTOCOL_VERSION = 1
 ANSWER = 0.05  #: s; a parameter frame that is not confirmed by then is sent again
 TRIES = 5
+KEY_TOLD = 0.3  #: s; a rig with a key tells its nonce within that: three of its periods
 SESSIONS = range(1, 15)
 
 
@@ -69,11 +70,15 @@ class RigLink:
         bus: can.BusABC,
         clock: Callable[[], float] = time.monotonic,
         session: int | None = None,
+        key: bytes | None = None,
     ) -> None:
-        """A link on an open bus, which stays the caller's. Nothing is sent before `connect`."""
+        """A link on an open bus, which stays the caller's. Nothing is sent before `connect`.
+
+        `key`: 16 octets, the rig's; None for a rig without one.
+        """
         self.bus = bus
         self.clock = clock
-        self.sender = Sender(session or random.choice(SESSIONS))
+        self.sender = Sender(session or random.choice(SESSIONS), key=key)
         self.counts: Counter[int] = Counter()  #: frames received, by identifier
         self.events: list[Reading] = []  #: not yet taken by `take_events`
         self.listener: Callable[[can.Message], None] | None = (
@@ -84,6 +89,7 @@ class RigLink:
         self._from_rig, self._from_desk = sent_by(CONTROLLER), sent_by(HOST)
         self._event = message("Event").frame_id
         self._heartbeat = message("ControllerHeartbeat").frame_id
+        self._nonce = message("SessionNonce").frame_id
 
     # ---- listening ---------------------------------------------------------------------------------------------
 
@@ -162,6 +168,9 @@ class RigLink:
             self.events.append(Reading("Event", now, decoded[1]))
         elif number == self._heartbeat and (decoded := decode(frame)) is not None:
             self.sender.challenge = int(decoded[1]["challenge"])
+        elif number == self._nonce and (decoded := decode(frame)) is not None:
+            signals = decoded[1]
+            self.sender.hear_nonce(int(signals["nonce_high"]) << 32 | int(signals["nonce_low"]))
 
     def _is_own(self, frame: can.Message) -> bool:
         """Whether a frame is the echo of one that this desk sent, as some interfaces give it."""
@@ -171,7 +180,10 @@ class RigLink:
     # ---- control -----------------------------------------------------------------------------------------------
 
     def connect(self, seconds: float = 1.0) -> None:
-        """Take control of the rig. NotConnectedError when none answers, RefusedError when another desk has it."""
+        """Take control of the rig.
+
+        NotConnectedError when none answers, RefusedError when another desk has it or it wants another key.
+        """
         self.listen(seconds)
         heartbeat = self._signals("ControllerHeartbeat")
         version, hash_there = int(heartbeat["protocol_version"]), int(heartbeat["params_hash"])
@@ -185,14 +197,33 @@ class RigLink:
                 f"the rig has other parameters (hash {hash_there:08x}, here "
                 f"{_core.firmware_hash():08x}); use the program that came with the rig's firmware"
             )
+        if self.sender.key is not None and not self.wait(self._has_key, KEY_TOLD):
+            raise NotConnectedError(
+                "the rig has no key and would obey anybody on this bus; "
+                "give the rig its key, or leave --key-file out"
+            )
         while self._in_control() == self.sender.session:  # another desk drew the same number
-            self.sender = Sender(random.choice(SESSIONS), self.sender.challenge)
+            self.sender = replace(self.sender, session=random.choice(SESSIONS))
         self._next_heartbeat = self.clock()
         if not self.wait(lambda: self._in_control() == self.sender.session, seconds):
             self._next_heartbeat = None
             other = self._in_control()
+            if other == 0 and self._has_key():
+                raise RefusedError(self._wrong_key())
             who = {0: "nobody", 15: "the console"}.get(other, f"another desk (session {other})")
             raise RefusedError(f"the rig does not take this desk: {who} has control; wait for it")
+
+    def _has_key(self) -> bool:
+        """Whether the rig obeys authentic commands only."""
+        return self._nonce in self._latest
+
+    def _wrong_key(self) -> str:
+        if self.sender.key is None:
+            return "the rig obeys authenticated commands only; give its key: --key-file FILE"
+        return (
+            "the rig refuses this desk's frames as not authentic: its key is another one; "
+            "check --key-file"
+        )
 
     def listen(self, seconds: float = 1.0) -> None:
         """Wait for the rig's heartbeat, sending nothing. NotConnectedError when none comes."""
@@ -213,7 +244,15 @@ class RigLink:
         return frame
 
     def transmit(self, frame: can.Message) -> None:
-        """Put a frame on the bus. BusError when the bus takes none."""
+        """Put a command frame on the bus, its authenticator before it where there is a key.
+
+        BusError when the bus takes none.
+        """
+        if self.sender.key is not None:
+            self._put(self.sender.authenticator(frame))
+        self._put(frame)
+
+    def _put(self, frame: can.Message) -> None:
         try:
             self.bus.send(frame)
         except can.CanError as problem:

@@ -7,6 +7,7 @@ and the frames as python-can has them. Time is the rig's: whoever steps it decid
 from __future__ import annotations
 
 import re
+import secrets
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -75,9 +76,11 @@ class VirtualRig:
         seed: int = 1,
         height: float = START_HEIGHT,
         noisy: bool = True,
+        key: bytes | None = None,
     ) -> None:
         """At rest, level, disabled. `effects` are of the plant: "valve_leakage=2e-10", of one leg
-        "valve_leakage:2=2e-10", with units "tube_length=2 m". InputError for what cannot be."""
+        "valve_leakage:2=2e-10", with units "tube_length=2 m". With a `key` it obeys authentic commands only.
+        InputError for what cannot be."""
         params = [Params() for _ in range(LEGS)]
         for effect in effects:
             _apply_effect(params, effect)
@@ -99,6 +102,8 @@ class VirtualRig:
             position_noise=POSITION_NOISE if noisy else 0.0,
             pressure_noise=PRESSURE_NOISE if noisy else 0.0,
             seed=seed,
+            key=key or b"",
+            nonce=secrets.randbits(64),
         )
 
     @property
