@@ -10,9 +10,10 @@ constexpr double kFast = 0.025;  // m/s
 // On either side: longer than a valve and a chamber take to stop a piston that is not seen slowing down.
 constexpr double kAround = 0.01;  // s
 
-// Of the time since a tank's command has moved, a step takes this share at most: what follows a jump, from the spool over
-// line and reservoir to the tank's filling and its heat, is each slower than what came before.
-constexpr double kShareOfRest = 0.05;
+// Since a tank's command has moved: longer than a window, so that one that holds a jump is simulated in short steps to its
+// end. Over steps of unlike lengths the trace of a late command differs from that of an initial state by more than it
+// should, and its standard error comes out too small.
+constexpr double kSettled = 6.0;  // s
 
 // From the longest step at each sample, s: none goes on to where a shorter one is asked for.
 SampleSteps within(const std::vector<double>& longest, double step) {
@@ -60,8 +61,7 @@ SampleSteps steps_by_command(const Eigen::VectorXd& command, double step, const 
   for (int k = 0; k < samples; ++k) {
     since = differ(k) ? 0.0 : since + step;
     const double rested = differ(k + 1) ? 0.0 : since;
-    longest_at[static_cast<std::size_t>(k)] =
-        std::max(longest.near_events, std::min(kShareOfRest * rested, longest.elsewhere));
+    longest_at[static_cast<std::size_t>(k)] = rested < kSettled ? longest.near_events : longest.elsewhere;
   }
   return within(longest_at, step);
 }

@@ -3,9 +3,12 @@
 //
 // What asks for short steps on an actuator is its friction: over the kink at standstill a piston that stops chatters
 // where a step is long (integrate_stiff.hpp). Everywhere else the air sets the pace, and that is slower by far. So a
-// sample gets short steps where the record says that a piston may stop, and long ones where it is well on its way. On a
-// tank an opening takes milliseconds, what follows seconds: steps are short while the command moves, and long where it
-// rests.
+// sample gets short steps where the record says that a piston may stop, and longer ones where it is well on its way. On a
+// tank an opening takes milliseconds, what follows seconds: steps are short while the command moves and for some seconds
+// after, and long where it rests.
+//
+// What limits the longer ones are not the readings but their derivatives: a late command and a slow spool leave traces
+// that hardly differ from that of another initial state, and over steps of unlike lengths they differ by more.
 //
 // The record says it and not the simulation: the steps are the same at whatever parameters, and a residual stays smooth in
 // them.
@@ -73,7 +76,7 @@ struct LongestSteps {
 SampleSteps steps_by_motion(const std::vector<const Eigen::VectorXd*>& extensions, double step,
                             const LongestSteps& longest);
 
-// Of a record of a tank, by its command, V; step: of the record, s. They grow with the time since the command has moved.
+// Of a record of a tank, by its command, V; step: of the record, s. Long where the command has rested for long.
 SampleSteps steps_by_command(const Eigen::VectorXd& command, double step, const LongestSteps& longest);
 
 }  // namespace estimation

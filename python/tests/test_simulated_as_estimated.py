@@ -68,7 +68,7 @@ REST, MOVES = 0.2, 0.8
 
 @pytest.fixture
 def one_step_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    for rig in (sms.rigs.tank, sms.rigs.bench, sms.rigs.platform):
+    for rig in (sms.rigs.tank, sms.rigs.bench):
         monkeypatch.setattr(rig, "LONGEST_STEP_ELSEWHERE", rig.LONGEST_STEP)
 
 
@@ -400,13 +400,12 @@ def test_a_simulated_effect_is_predicted_by_the_estimation(
         assert difference < setting.share * left(runs, without), names
 
 
-@pytest.mark.parametrize("kind", ["bench", "platform"])
 def test_longer_steps_in_motion_change_far_less_than_a_good_sensor_s_noise(
-    kind: str, tmp_path: Path
+    tmp_path: Path,
 ) -> None:
-    setting = Setting(kind, None)
+    setting = Setting("bench", None)
     machine = healthy(setting)
-    run, driven_by = SIMULATE[kind](setting, machine, "polytropic")
+    run, driven_by = SIMULATE["bench"](setting, machine, "polytropic")
     rig = rig_of(tmp_path, setting, "polytropic")
     problem = estimated(setting, run, driven_by, rig).simulation
     for _ in range(3):  # each search for the initial state goes on where the last one ended

@@ -19,8 +19,6 @@ from sms.rigs.pneumatic import NOTHING, READ_DIRECTLY, in_windows, record_of_sim
 
 LONGEST_STEP = 2.5e-3
 """s: of the integration. Under the platform a piston carries a hundred kilograms, and stops gently."""
-LONGEST_STEP_ELSEWHERE = 5e-3
-"""s: where all three are well on their way."""
 HIDDEN = {
     **{f"force of leg {leg}": "N" for leg in LEGS},
     **{f"flow of the lower chamber of leg {leg}": "kg/s" for leg in LEGS},
@@ -43,7 +41,6 @@ def make_problem(
     problem = _core.PlatformProblem(
         records=[record_of(run, channels, command=columns(run, "valve_command")) for run in runs],
         noise={s: noise[s] for s in OUTPUTS},
-        longest_step_elsewhere=LONGEST_STEP_ELSEWHERE,
         **in_windows(rig, LONGEST_STEP, runs),
     )
     # Its parameters are LegParams, which are Params with more names.
