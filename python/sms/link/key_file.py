@@ -16,7 +16,9 @@ def read_key(file: Path) -> bytes:
     try:
         text = file.read_text(encoding="ascii")
     except OSError as problem:
-        raise InputError(f"the key file {file} cannot be read ({problem.strerror})") from None
+        raise InputError(
+            f"the key file {file} cannot be read ({problem.strerror}); check --key-file"
+        ) from None
     except UnicodeDecodeError:
         text = ""
     try:
