@@ -4,8 +4,8 @@
 // What asks for short steps on an actuator is its friction: over the kink at standstill a piston that stops chatters
 // where a step is long (integrate_stiff.hpp). Everywhere else the air sets the pace, and that is slower by far. So a
 // sample gets short steps where the record says that a piston may stop, and longer ones where it is well on its way. On a
-// tank an opening takes milliseconds, what follows seconds: steps are short while the command moves and for some seconds
-// after, and long where it rests.
+// tank an opening takes milliseconds, what follows seconds: steps are short while the command moves, and grow with the time
+// since.
 //
 // What limits the longer ones are not the readings but their derivatives: a late command and a slow spool leave traces
 // that hardly differ from that of another initial state, and over steps of unlike lengths they differ by more.
@@ -70,6 +70,7 @@ struct LongestSteps {
   LongestSteps(double everywhere)
       : LongestSteps(everywhere, everywhere) {}  // NOLINT(google-explicit-constructor): both
   LongestSteps(double near_events_, double elsewhere_) : near_events(near_events_), elsewhere(elsewhere_) {}
+  double within(double step) const { return std::max(near_events, std::min(step, elsewhere)); }
 };
 
 // Of a record of pistons, by their extensions, m; step: of the record, s.

@@ -122,7 +122,7 @@ TEST_CASE("tank: derivatives of a simulation are those of differences, at neutra
   }
 }
 
-TEST_CASE("tank: steps over several samples where the command rests change readings by far less than their noise") {
+TEST_CASE("tank: steps that grow while the command rests change readings by far less than their noise") {
   const int samples = 2000;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(samples);
   Eigen::VectorXd steps_up = Eigen::VectorXd::Constant(samples, 5.0);
@@ -135,8 +135,9 @@ TEST_CASE("tank: steps over several samples where the command rests change readi
   CHECK(cut.of(98) == est::Pace{1, 1});  // a long step does not go over the jump at 100
   CHECK(cut.of(99) == est::Pace{4, 1});
   CHECK(cut.of(105) == est::Pace{4, 1});
-  CHECK(cut.of(690) == est::Pace{4, 1});  // no window that holds the jump has long ones
-  CHECK(cut.of(720) == est::Pace{1, 5});
+  CHECK(cut.of(190) == est::Pace{3, 1});  // 0.9 s after the jump; they grow with the time since
+  CHECK(cut.of(350) == est::Pace{1, 1});
+  CHECK(cut.of(720) == est::Pace{1, 3});
   CHECK(cut.of(897) == est::Pace{1, 2});
   for (const double share : {0.0, 0.8}) {
     sms::Params<double> p;

@@ -80,32 +80,44 @@ struct Fall {
   S slope;
 };
 
+// power: (speed / (a width))^delta
 template <typename S>
-Fall<S> fall_at(const S& acceleration, const S& speed, const S& width, const S& exponent) {
+Fall<S> fall_of(const S& power, const S& exponent, const S& acceleration) {
   using std::exp;
-  const S power = stribeck_power<S>(speed, acceleration * width, exponent);
   const S value = exp(-power);
   return {value, value * exponent * power / acceleration};
 }
 
-// a > 0 with  mass a + rise fall(a) = excess,  for plain numbers and excess > 0.
+template <typename S>
+Fall<S> fall_at(const S& acceleration, const S& speed, const S& width, const S& exponent) {
+  return fall_of<S>(stribeck_power<S>(speed, acceleration * width, exponent), exponent, acceleration);
+}
+
+// a > 0 with  mass a + rise fall(a) = excess,  for plain numbers and excess > 0: by steps of Halley's method, whose
+// second derivative costs nothing beside the first, within an interval that holds the root.
 template <typename V>
 V solve_speeding_up(const V& mass, const V& rise, const V& excess, const V& speed, const V& width, const V& exponent) {
   using std::abs;
-  const V small = V(4) * std::numeric_limits<V>::epsilon();
-  const int bound = 3 * std::numeric_limits<V>::digits;
+  constexpr V kSmall = V(4) * std::numeric_limits<V>::epsilon();
+  // The next step is about the third power of one, in shares of a, times the square of the fall's steepness.
+  constexpr V kSteepest = V(1e4);
+  constexpr int kBound = 3 * std::numeric_limits<V>::digits;
   V low = V(0), high = (rise < V(0) ? excess - rise : excess) / mass;
   V a = high, last_step = high;
-  for (int i = 0; i < bound && high - low > small * high; ++i) {
-    const Fall<V> fall = fall_at(a, speed, width, exponent);
+  for (int i = 0; i < kBound && high - low > kSmall * high; ++i) {
+    const V power = stribeck_power<V>(speed, a * width, exponent);
+    const Fall<V> fall = fall_of<V>(power, exponent, a);
     const V off = mass * a + rise * fall.value - excess;
+    const V slope = mass + rise * fall.slope;
+    const V curvature = rise * fall.slope * (exponent * (power - V(1)) - V(1)) / a;
     (off > V(0) ? high : low) = a;
-    V next = a - off / (mass + rise * fall.slope);
-    const V step = abs(next - a);
-    if (step <= small * a) {
+    V next = a - off / (slope - V(0.5) * off * curvature / slope);
+    const V step = abs(next - a), share = step / a;
+    const bool within = next > low && next < high;
+    if (step <= kSmall * a || (within && kSteepest * share * share * share <= kSmall)) {
       return next;
     }
-    if (!(next > low && next < high) || step > V(0.5) * last_step) {
+    if (!within || step > V(0.5) * last_step) {
       next = low + V(0.5) * (high - low);
     }
     last_step = abs(next - a);

@@ -327,7 +327,7 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
 
 def without_sensitivities(fitted: Fitted) -> Fitted:
     """The same model for whoever asks for its values: a round of the search holds dozens of them."""
-    if not isinstance(fitted.fit, WindowFit):
+    if not isinstance(fitted.fit, WindowFit) or not (len(fitted.fit.jacobian) or fitted.columns):
         return fitted
     none = np.empty((0, len(fitted.hypothesis.free)))
     return replace(fitted, fit=replace(fitted.fit, jacobian=none), columns={})

@@ -69,6 +69,10 @@ UNKNOWN_CHANCE = 0.005
 FINITE_STEPS = (0.01, 0.05, 0.2)
 """Of the way to either end of the plausible range: the sizes at which an effect is tried with all else held. Run time:
 a factor of five apart, and least squares goes on from the best."""
+REFINED = 0.3
+"""Of the best gain of any size: with less, a size is not refined by least squares. Run time: a factor of five apart,
+sizes show two thirds of what the best between them gains.
+"""
 STEPPED_ON = 3
 """Windows with the largest error on which finite steps are tried, and as many of all. Run time."""
 TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3

@@ -26,7 +26,7 @@ TABLES = {2e5: "iso_0_2_mpa", 4e5: "iso_0_4_mpa"}
 LONGEST_STEP = 2.5e-3
 """s: of the integration. With a twenty-fifth of it readings differ by a hundredth of their noise."""
 LONGEST_STEP_ELSEWHERE = 50e-3
-"""s: where the command has rested for seconds. Readings and detection limits are those with a fifth of it."""
+"""s: where the command has rested for ten seconds. Readings and detection limits are those with a fifth of it."""
 HIDDEN = {"flow of the tank": "kg/s", "supply pressure": "Pa"}
 OUTPUTS = ("tank_pressure", "tank_temperature", "supply_pressure")
 

@@ -17,7 +17,7 @@ from sms.diagnosis.adequacy.residual_energy import beyond_healthy, energies, log
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Hypothesis, residual_of
 from sms.diagnosis.selection.candidates import moved, room_of
-from sms.diagnosis.thresholds import FINITE_STEPS, STEPPED_ON, TRIED_BY_STEP, TWINS
+from sms.diagnosis.thresholds import FINITE_STEPS, REFINED, STEPPED_ON, TRIED_BY_STEP, TWINS
 from sms.estimation.least_squares import Free, changed, fit_windows
 from sms.estimation.windows import Runs
 from sms.parameters import common_parameter
@@ -60,7 +60,14 @@ def best_steps(
     left = beyond_healthy(data, data.identify, residual_of(data.identify, base))
     excerpt = data.identify.excerpt(telling_windows(data.identify, left))
     here = logarithms(excerpt, residual_of(excerpt, base))
-    return [best_step(e, current, base, data, excerpt, here) for e in effects]
+    tried = [_best_of_ladder(e, base, data, excerpt, here) for e in effects]
+    least = REFINED * max((step.gain for step in tried), default=0.0)
+    return [
+        _refined(step, e, current, base, data, excerpt, here)
+        if step.gain > least or len(e.parameters) > 1
+        else step
+        for step, e in zip(tried, effects, strict=True)
+    ]
 
 
 def _as_declared(current: Fitted) -> _core.Params:
@@ -68,18 +75,10 @@ def _as_declared(current: Fitted) -> _core.Params:
     return changed(current.params, known, np.array([current.hypothesis.start[n] for n in known]))
 
 
-def best_step(
-    effect: Effect,
-    current: Fitted,
-    base: _core.Params,
-    data: Data,
-    excerpt: Runs,
-    here: float,
+def _best_of_ladder(
+    effect: Effect, base: _core.Params, data: Data, excerpt: Runs, here: float
 ) -> Step:
-    """The best of a ladder of sizes, and from there least squares over the effect's own parameters.
-
-    base: what all else is held at, which leaves `here` of the excerpt.
-    """
+    """The best of a ladder of sizes. base: what all else is held at, which leaves `here` of the excerpt."""
     name = effect.parameters[0]
     before = residual_of(excerpt, base)
     nothing = Step(0.0, base, np.zeros(len(before)))
@@ -100,13 +99,27 @@ def best_step(
                 best = Step(gain, params, residual - before)
             if gain < -len(excerpt.problem.windows):  # worse by far: larger ones are no better
                 break
+    return nothing if best.params is base else best
+
+
+def _refined(
+    best: Step,
+    effect: Effect,
+    current: Fitted,
+    base: _core.Params,
+    data: Data,
+    excerpt: Runs,
+    here: float,
+) -> Step:
+    """Least squares over the effect's own parameters, from the best of the ladder."""
     if best.params is base:
-        return nothing
+        return best
+    nothing = Step(0.0, base, np.zeros(len(best.change)))
     bounds = extended(current.hypothesis, effect, data).free
     free = [Free(n, *bounds[n], 0.0, base[n]) for n in effect.parameters]
     found = fit_windows(excerpt.problem, best.params, free)
     gain = here - logarithms(excerpt, found.residual)
-    refined = Step(gain, found.params, found.residual - before)
+    refined = Step(gain, found.params, found.residual - residual_of(excerpt, base))
     if all(
         found.params[n] == base[n] for n in effect.parameters
     ):  # a search for the initial states, and no effect

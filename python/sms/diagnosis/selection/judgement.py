@@ -67,15 +67,16 @@ def judge(
             _by_likelihood(trial, before, after, weights, tried, data.healthy)
         low, high = (min(part * g, 1.0) for g in trial.gain_interval)
         trial.share = (min(part * trial.gain, 1.0), low, high)
-        if trial.gain_interval[0] <= 0.0 and _insensitive(trial, current, data, before, after):
-            trial.cross_validated = True
-            disagreement = cross_validation.objection(
+        trial.cross_validated = trial.gain_interval[0] <= 0.0 and _insensitive(
+            trial, current, data, before, after
+        )
+        trial.reason = _untenable(trial, data) or _leaves_much(
+            trial, needed, _telling(before, data)
+        )
+        if trial.cross_validated and not trial.reason:
+            trial.reason = cross_validation.objection(
                 trial.fitted, current, data, 1.0, rng.spawn(1)[0]
             )
-        else:
-            disagreement = ""
-        untenable = _untenable(trial, data) or disagreement
-        trial.reason = untenable or _leaves_much(trial, needed, _telling(before, data))
         channel = channel_of_its_own(trial.effect, data)
         if trial.reason and trial.lower > 0.0 and channel is not None and data.healthy is None:
             trial.p_value, trial.cross_validated = by_score, False

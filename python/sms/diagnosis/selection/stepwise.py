@@ -79,13 +79,14 @@ def try_effects(
     data: Data,
     effects: Sequence[Effect],
     rng: np.random.Generator,
-    afar: bool = False,
+    nearby: Mapping[Effect, Fitted] | None = None,
 ) -> tuple[Fitted, list[Trial]]:
     """Every effect on top of the model as it stands; those that promise most are fitted. The model comes back with the
-    initial states that the trials have found. afar: finite steps begin at what is declared.
+    initial states that the trials have found. nearby: those that were fitted from where the model stands; finite steps
+    begin at what is declared then.
     """
     scores = score_effects(current, data, effects, rng)
-    first = _promising(current, data, effects, scores, afar)
+    first = _promising(current, data, effects, scores, nearby)
     current = looked_at_again(current, data)
     before = refitted(current, data).fit.residual ** 2
     trials = []
@@ -108,7 +109,11 @@ def try_effects(
 
 
 def _promising(
-    current: Fitted, data: Data, effects: Sequence[Effect], scores: ScoreTests, afar: bool
+    current: Fitted,
+    data: Data,
+    effects: Sequence[Effect],
+    scores: ScoreTests,
+    nearby: Mapping[Effect, Fitted] | None,
 ) -> dict[int, Fitted]:
     """By index the effects that are fitted: the best by finite steps and by slope, each in a direction of its own, then
     what is alike to the best of them or acts in its equation.
@@ -116,6 +121,7 @@ def _promising(
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
     # Records of the healthy machine tell its numbers so well that nothing is to be had from where they went since.
+    afar = nearby is not None
     steps = best_steps(effects, current, data, declared=afar or data.healthy is not None)
     alike = scores.cosine > ALIKE
     by_slope = first_of_each([int(k) for k in np.argsort(-promise) if promise[k] > 0.0], alike)
@@ -127,9 +133,13 @@ def _promising(
         return logarithms(data.identify, fitted.fit.residual)
 
     def candidate(k: int) -> Fitted:
-        found = _fitted(effects[k], current, data, steps[k], float(scores.estimate[k]), room[k])
+        effect, step = effects[k], steps[k]
+        if nearby is not None and effect in nearby:
+            found = nearby[effect]
+        else:
+            found = _fitted(effect, current, data, step, float(scores.estimate[k]), room[k])
         if afar and k in by_step:
-            found = min(found, _fitted_from(steps[k].params, effects[k], current, data), key=left)
+            found = min(found, _fitted_from(step.params, effect, current, data), key=left)
         return without_sensitivities(found)
 
     first = {k: candidate(k) for k in chosen}
@@ -229,7 +239,8 @@ def stepwise_selection(
         members = ambiguity_group(trials, current, data)
         if not members and data.healthy is None and departs(current):
             # What is known went farther than chance has it: it may have made up for what is looked for.
-            current, trials = try_effects(current, data, remaining, rng, afar=True)
+            nearby = {t.effect: t.fitted for t in trials if t.fitted is not current}
+            current, trials = try_effects(current, data, remaining, rng, nearby)
             judge(trials, current, data, original, needed, rng)
             members = ambiguity_group(trials, current, data)
         together = (
