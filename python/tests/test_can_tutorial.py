@@ -12,7 +12,11 @@ from pathlib import Path
 import pytest
 
 PAGE = Path(__file__).parents[2] / "docs" / "can_tutorial.md"
-PORTS = {"43113": "43213", "43114": "43214"}  # a rig on the usual bus is left alone
+PORTS = {
+    "43113": "43213",
+    "43114": "43214",
+    "43115": "43215",
+}  # a rig on the usual bus is left alone
 
 
 def commands(text: str) -> list[str]:
@@ -41,6 +45,11 @@ def test_every_command_of_the_tutorial(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stdout + result.stderr
     assert "mode disabled" in result.stdout
     assert "position_gain = 40" in result.stdout
+    assert "commands: open to whoever is on this bus" in result.stdout
+    assert "commands: authenticated, the rig has a key" in result.stdout
+    assert "refused\n" in result.stdout
+    assert result.stdout.count("position_gain = 45") == 2
+    assert "position_gain = 50" not in result.stdout
     assert result.stdout.count("set-points, one every 10 ms") == 3
     legs = {
         int(leg): (float(volts), float(pressure))

@@ -74,6 +74,7 @@ def test_monitor_shows_names_values_and_units() -> None:
         "mm",
         "chamber_pressure_lower_3",
         "kPa",
+        "commands: open to whoever is on this bus",
     ):
         assert word in text
 

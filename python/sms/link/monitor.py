@@ -136,6 +136,12 @@ def _traffic(link: RigLink, rates: Mapping[int, float]) -> Text:
             for name, value in statistics.signals.items()
         )
         words += f"; commands it missed or refused: {', '.join(counts)}"
+    if total > 0.0:
+        words += "; commands: " + (
+            "authenticated, the rig has a key"
+            if link.has_key()
+            else "open to whoever is on this bus"
+        )
     return Text(words, style="dim")
 
 

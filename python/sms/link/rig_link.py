@@ -197,7 +197,7 @@ class RigLink:
                 f"the rig has other parameters (hash {hash_there:08x}, here "
                 f"{_core.firmware_hash():08x}); use the program that came with the rig's firmware"
             )
-        if self.sender.key is not None and not self.wait(self._has_key, KEY_TOLD):
+        if self.sender.key is not None and not self.wait(self.has_key, KEY_TOLD):
             raise NotConnectedError(
                 "the rig has no key and would obey anybody on this bus; "
                 "give the rig its key, or leave --key-file out"
@@ -208,12 +208,12 @@ class RigLink:
         if not self.wait(lambda: self._in_control() == self.sender.session, seconds):
             self._next_heartbeat = None
             other = self._in_control()
-            if other == 0 and self._has_key():
+            if other == 0 and self.has_key():
                 raise RefusedError(self._wrong_key())
             who = {0: "nobody", 15: "the console"}.get(other, f"another desk (session {other})")
             raise RefusedError(f"the rig does not take this desk: {who} has control; wait for it")
 
-    def _has_key(self) -> bool:
+    def has_key(self) -> bool:
         """Whether the rig obeys authentic commands only."""
         return self._nonce in self._latest
 
