@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from sms.diagnosis.design.detection_limits import published_rig
-from sms.diagnosis.design.next_experiment import next_experiment
+from sms.diagnosis.design.next_experiment import next_experiment, same_experiment
 from sms.diagnosis.remainder import Hidden, Shape
 from sms.rigs.kinds import KINDS
 
@@ -46,3 +46,22 @@ def test_a_proposed_record_holds_what_the_sensors_say(name: str) -> None:
     for signal, values in run.signals.items():
         more = 5e3 if signal == "supply_pressure" else 0.0
         np.testing.assert_allclose(wrong.signals[signal] - values, more, rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", list(KINDS))
+def test_a_run_of_the_menu_is_told_from_the_others_on_a_machine_that_is_a_little_off(
+    name: str,
+) -> None:
+    rig, kind = published_rig(name), KINDS[name]
+    as_fitted, machine = rig.start(), rig.start()
+    machine["mass_flow_gain"] = 0.98 * rig.start()["mass_flow_gain"]
+    machine["valve_centre"] = rig.start()["valve_centre"] + 0.005
+    runs = [e.simulated(rig, as_fitted, kind.outputs) for e in kind.menu]
+    records = [e.simulated(rig, machine, kind.outputs) for e in kind.menu]
+    for i, run in enumerate(runs):
+        for j, record in enumerate(records):
+            if run is not None and record is not None:
+                assert same_experiment(run, record) == (i == j), (
+                    kind.menu[i].title,
+                    kind.menu[j].title,
+                )

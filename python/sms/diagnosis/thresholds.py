@@ -209,6 +209,13 @@ PROMINENCE = 4.0
 AGREEMENT = 0.05
 """Relative difference of the period between records and directions. Judgement."""
 
+# ---- Next experiment -------------------------------------------------------------------------------
+
+SAME_RUN = 0.3
+"""Of a motion, within which a record is of the same run of a menu. Judgement: two of a menu differ by 0.6 and more or
+are made under other conditions, a machine follows its fitted model within a tenth.
+"""
+
 # ---- A model of one's own --------------------------------------------------------------------------
 
 FEWEST_WINDOWS = 6

@@ -3,7 +3,8 @@
 Every run of the menu of this kind of rig is simulated with the model as it stands, and the rivals' sensitivities in it
 are computed. What one rival does and no other rival and no known parameter
 can imitate, in standard errors, is the separation to be expected; the run with the largest smallest separation is
-proposed.
+proposed. A run that is among the records already is not: it has not told them apart, and what a model leaves in it
+systematically it would leave again.
 """
 
 from __future__ import annotations
@@ -20,9 +21,12 @@ from sms.diagnosis.effects.sensitivity import sensitivity_columns
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.remainder import Hidden
 from sms.diagnosis.result import NextExperiment, Verdict
+from sms.diagnosis.thresholds import SAME_RUN
 from sms.estimation.kind import Experiment
 from sms.estimation.nuisance import nuisance_at, project
+from sms.estimation.run import Run
 from sms.estimation.windows import Runs
+from sms.io.signals import without_leg
 
 
 def next_experiment(
@@ -100,12 +104,39 @@ def best_of_menu(
     best: tuple[Experiment, float] | None = None
     for experiment in runs.kind.menu:
         run = experiment.simulated(data.rig, final.params, runs.channels)
-        if run is None:
+        if run is None or any(same_experiment(run, record) for record in runs.motions):
             continue
         separation = min_separation(rivals, final, replace(runs, motions=(run,)))
         if best is None or separation > best[1]:
             best = experiment, separation
     return best
+
+
+def same_experiment(run: Run, record: Run) -> bool:
+    """Whether a record is of this run of a menu: the same motion, or the same command where nothing moves, under the
+    same conditions."""
+    changed = {*run.conditions, *record.conditions}
+    return (
+        all(
+            np.isclose(run.conditions.get(n, 0.0), record.conditions.get(n, 0.0), rtol=0.1)
+            for n in changed
+        )
+        and unlikeness(run, record) < SAME_RUN
+    )
+
+
+def unlikeness(run: Run, record: Run) -> float:
+    """RMS of the difference of two motions, over that of the first about its mean; of the signal that differs most."""
+    time, planned = record.time - record.time[0], run.time - run.time[0]
+    if abs(time[-1] - planned[-1]) > SAME_RUN * planned[-1]:
+        return float("inf")
+    asked = [s for s in run.signals if without_leg(s) == "extension"]
+    asked = asked or [s for s in run.signals if without_leg(s) == "valve_command"]
+    there = [np.interp(time, planned, run.signals[s]) for s in asked]
+    here = [record.signals[s] for s in asked]
+    return max(
+        float(np.std(h - t) / max(np.std(t), 1e-300)) for h, t in zip(here, there, strict=True)
+    )
 
 
 def min_separation(rivals: Sequence[Effect], final: Fitted, runs: Runs) -> float:
