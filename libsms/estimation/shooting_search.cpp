@@ -5,12 +5,6 @@
 
 namespace sms {
 namespace estimation {
-namespace {
-
-constexpr double kDamping = 1e-6;    // of a full step
-constexpr double kAsPromised = 0.5;  // what slopes must keep to be led on by
-
-}  // namespace
 
 void in_parallel(int threads, std::size_t windows, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
@@ -42,6 +36,7 @@ bool is_finite(const Shot& shot) { return shot.start.allFinite() && shot.residua
 bool follow(const WindowSimulation& window, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& scale,
             const WindowOptions& options, Shot* shot) {
   constexpr int kMostSteps = 4;
+  constexpr double kDamping = 1e-6, kAsPromised = 0.5;
   Eigen::VectorXd tried_residual(slopes.rows());
   for (int k = 0; k < kMostSteps && shot->residual.allFinite(); ++k) {
     const StartStep step = start_step(slopes, shot->residual, scale, kDamping);
@@ -66,11 +61,11 @@ bool follow(const WindowSimulation& window, const Eigen::MatrixXd& slopes, const
 
 // A state is tried in plain numbers, which are ten times cheaper; slopes are worked out where the search goes on from.
 Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
-           const WindowOptions& options, bool exact, int most_steps) {
+           const WindowOptions& options, int most_steps) {
   Shot shot;
   shot.start = from;
   Eigen::VectorXd tried_residual;
-  double damping = kDamping;
+  double damping = 1e-6;
   for (int k = 0; k < most_steps; ++k) {
     window.find_slopes(&shot);
     const StartStep step = start_step(shot.slopes, shot.residual, scale, damping);
@@ -88,8 +83,7 @@ Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Ei
       shot.residual.swap(tried_residual);
       shot.has_slopes = false;
       damping = std::max(0.1 * damping, 1e-9);
-      if (gain < enough || (!exact && gain > kAsPromised * step.promised &&
-                            !(start_step(shot.slopes, shot.residual, scale, kDamping).promised > enough))) {
+      if (gain < enough) {
         break;
       }
     } else if (damping > 1e3) {

@@ -28,10 +28,9 @@ constexpr double kBadlyOff = 4.0;
 bool follow(const WindowSimulation& window, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& scale,
             const WindowOptions& options, Shot* shot);
 
-// Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions). exact: so says the
-// linearised window at the very end; else a full step that has kept what it promised may end the search by its own slopes.
+// Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
 Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
-           const WindowOptions& options, bool exact, int most_steps = 12);
+           const WindowOptions& options, int most_steps = 12);
 
 // Derivatives of the rows, a direction a column.
 void columns_of(const std::vector<ParameterJet>& jets, Eigen::MatrixXd* columns);
@@ -244,7 +243,7 @@ Shot ShootingProblem<Plant>::shoot(const Machine<double>& params, const Window& 
       return shot;
     }
   }
-  return estimation::shoot(window, shot.start, start_scales(), options_, exact);
+  return estimation::shoot(window, shot.start, start_scales(), options_);
 }
 
 template <typename Plant>
@@ -253,7 +252,7 @@ Shot ShootingProblem<Plant>::search(const Machine<double>& params, const Window&
   constexpr double kBetter = 0.5;
   Shot shot = shoot(params, w, k, true);
   const auto try_from = [&](const Eigen::VectorXd& from) {
-    Shot other = estimation::shoot(Simulated(*this, params, w), from, start_scales(), options_, true, kMostSteps);
+    Shot other = estimation::shoot(Simulated(*this, params, w), from, start_scales(), options_, kMostSteps);
     if (other.residual.squaredNorm() < shot.residual.squaredNorm()) {
       shot = std::move(other);
     }
