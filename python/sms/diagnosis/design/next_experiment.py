@@ -116,13 +116,9 @@ def same_experiment(run: Run, record: Run) -> bool:
     """Whether a record is of this run of a menu: the same motion, or the same command where nothing moves, under the
     same conditions."""
     changed = {*run.conditions, *record.conditions}
-    return (
-        all(
-            np.isclose(run.conditions.get(n, 0.0), record.conditions.get(n, 0.0), rtol=0.1)
-            for n in changed
-        )
-        and unlikeness(run, record) < SAME_RUN
-    )
+    pairs = [(run.conditions.get(n, 0.0), record.conditions.get(n, 0.0)) for n in changed]
+    alike = all(abs(a - b) <= SAME_RUN * max(abs(a), abs(b)) for a, b in pairs)
+    return alike and unlikeness(run, record) < SAME_RUN
 
 
 def unlikeness(run: Run, record: Run) -> float:
