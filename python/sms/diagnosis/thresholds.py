@@ -212,9 +212,11 @@ AGREEMENT = 0.05
 # ---- Next experiment -------------------------------------------------------------------------------
 
 SAME_RUN = 0.3
-"""Of a motion and of what was changed on purpose, within which a record is of the same run of a menu. Judgement: two of
-a menu differ by 0.6 and more or are made under other conditions, a machine follows its fitted model within a tenth.
+"""Of a motion, within which a record is of the same run of a menu. Judgement: two of a menu differ by 0.6 and more or
+are made under other conditions, a machine follows its fitted model within a tenth.
 """
+SAME_CONDITIONS = 0.1
+"""Of what was changed on purpose (a mass, the supply): within that, it is the same change. Judgement."""
 
 # ---- A model of one's own --------------------------------------------------------------------------
 

@@ -21,7 +21,7 @@ from sms.diagnosis.effects.sensitivity import sensitivity_columns
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.remainder import Hidden
 from sms.diagnosis.result import NextExperiment, Verdict
-from sms.diagnosis.thresholds import SAME_RUN
+from sms.diagnosis.thresholds import SAME_CONDITIONS, SAME_RUN
 from sms.estimation.kind import Experiment
 from sms.estimation.nuisance import nuisance_at, project
 from sms.estimation.run import Run
@@ -117,7 +117,7 @@ def same_experiment(run: Run, record: Run) -> bool:
     same conditions."""
     changed = {*run.conditions, *record.conditions}
     pairs = [(run.conditions.get(n, 0.0), record.conditions.get(n, 0.0)) for n in changed]
-    alike = all(abs(a - b) <= SAME_RUN * max(abs(a), abs(b)) for a, b in pairs)
+    alike = all(abs(a - b) <= SAME_CONDITIONS * max(abs(a), abs(b)) for a, b in pairs)
     return alike and unlikeness(run, record) < SAME_RUN
 
 
