@@ -13,7 +13,7 @@ constexpr double kAround = 0.01;  // s
 // Of the time since a tank's command has moved, a step: what it has started fades over as long as it has lasted, and a step
 // of second order follows it to the square of that. Where steps grow faster, the trace of a late command differs from that
 // of an initial state by more than it should, and its standard error comes out too small: 3 % at twice the share.
-constexpr double kShare = 0.005;
+constexpr double kStepOverRest = 0.005;
 
 // From the longest step at each sample, s: none goes on to where a shorter one is asked for.
 SampleSteps within(const std::vector<double>& longest, double step) {
@@ -61,7 +61,7 @@ SampleSteps steps_by_command(const Eigen::VectorXd& command, double step, const 
   for (int k = 0; k < samples; ++k) {
     since = differ(k) ? 0.0 : since + step;
     const double rested = differ(k + 1) ? 0.0 : since;
-    longest_at[static_cast<std::size_t>(k)] = longest.within(kShare * rested);
+    longest_at[static_cast<std::size_t>(k)] = longest.allowed(kStepOverRest * rested);
   }
   return within(longest_at, step);
 }

@@ -70,7 +70,8 @@ struct LongestSteps {
   LongestSteps(double everywhere)
       : LongestSteps(everywhere, everywhere) {}  // NOLINT(google-explicit-constructor): both
   LongestSteps(double near_events_, double elsewhere_) : near_events(near_events_), elsewhere(elsewhere_) {}
-  double within(double step) const { return std::max(near_events, std::min(step, elsewhere)); }
+  // The nearest to a step that they allow.
+  double allowed(double step) const { return std::max(near_events, std::min(step, elsewhere)); }
 };
 
 // Of a record of pistons, by their extensions, m; step: of the record, s.
