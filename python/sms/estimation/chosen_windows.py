@@ -61,6 +61,10 @@ class ChosenWindows:
     def rows(self) -> int:
         return len(self._rows)
 
+    def settle(self, params: _core.Params) -> None:
+        """As WindowProblem has it."""
+        self.problem.settle(params)
+
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         """Residual (rows,) and Jacobian (rows, free), as WindowProblem has them."""
         residual, jacobian = self.problem.evaluate(params, free)

@@ -45,6 +45,10 @@ class WithinNumbers:
     def windows(self) -> Sequence[Window]:
         return self.problem.windows
 
+    def settle(self, params: _core.Params) -> None:
+        """As WindowProblem has it."""
+        self.problem.settle(params)
+
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         """Residual (rows,) and Jacobian (rows, free), as WindowProblem has them; all of them finite."""
         residual, jacobian = self.problem.evaluate(params, free)

@@ -56,6 +56,10 @@ class WindowProblem(Problem, Protocol):
     @property
     def windows(self) -> Sequence[Window]: ...
 
+    def settle(self, params: _core.Params) -> None:
+        """Let later searches for initial states begin at the best ones of these parameters."""
+        ...
+
     def errors(self, params: _core.Params) -> NDArray[np.float64]:
         """(rows,): predicted less measured over the noise, at the best initial states."""
         ...

@@ -142,6 +142,9 @@ class Balance:
     def rows(self) -> int:
         return int(self.core.rows)
 
+    def settle(self, params: _core.Params) -> None:
+        """Nothing to do: a balance has no initial state."""
+
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         """Residual (rows,) and Jacobian (rows, free)."""
         return self.core.evaluate(params, free)

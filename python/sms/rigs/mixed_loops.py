@@ -83,6 +83,11 @@ class Mixed:
                 out[places] = values
         return out
 
+    def settle(self, params: _core.Params) -> None:
+        """As WindowProblem has it."""
+        for part in self.parts:
+            part.problem.settle(params)
+
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         """Residual (rows,) and Jacobian (rows, free), as WindowProblem has them."""
         residuals, slopes = zip(

@@ -117,6 +117,10 @@ class ShootingProblem:
 
     # ---- what the search asks for ----------------------------------------------------------------
 
+    def settle(self, params: Values) -> None:
+        """Let later searches for initial states begin at the best ones of these parameters."""
+        self._start = self._shoot(params).start
+
     def evaluate(self, params: Values, names: Sequence[str] = ()) -> tuple[Array, Array]:
         """Residual (rows,) and its derivatives (rows, names), less what initial states could undo."""
         shot = self._shoot(params)

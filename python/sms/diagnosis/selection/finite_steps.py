@@ -59,11 +59,12 @@ def best_steps(
     base = _as_declared(current) if declared else current.params
     left = beyond_healthy(data, data.identify, residual_of(data.identify, base))
     excerpt = data.identify.excerpt(telling_windows(data.identify, left))
-    here = logarithms(excerpt, residual_of(excerpt, base))
-    tried = [_best_of_ladder(e, base, data, excerpt, here) for e in effects]
+    excerpt.problem.settle(base)  # else each size looks for its initial states from the readings on
+    before = residual_of(excerpt, base)
+    tried = [_best_of_ladder(e, base, data, excerpt, before) for e in effects]
     least = REFINED * max((step.gain for step in tried), default=0.0)
     return [
-        _refined(step, e, current, base, data, excerpt, here)
+        _refined(step, e, current, base, data, excerpt, before)
         if step.gain > least or len(e.parameters) > 1
         else step
         for step, e in zip(tried, effects, strict=True)
@@ -76,11 +77,11 @@ def _as_declared(current: Fitted) -> _core.Params:
 
 
 def _best_of_ladder(
-    effect: Effect, base: _core.Params, data: Data, excerpt: Runs, here: float
+    effect: Effect, base: _core.Params, data: Data, excerpt: Runs, before: Array
 ) -> Step:
-    """The best of a ladder of sizes. base: what all else is held at, which leaves `here` of the excerpt."""
+    """The best of a ladder of sizes. base: what all else is held at, which leaves `before` (rows,) of the excerpt."""
     name = effect.parameters[0]
-    before = residual_of(excerpt, base)
+    here = logarithms(excerpt, before)
     nothing = Step(0.0, base, np.zeros(len(before)))
     # The first of several parameters may help only with another value of the others.
     best = nothing if len(effect.parameters) == 1 else Step(-np.inf, base, nothing.change)
@@ -109,7 +110,7 @@ def _refined(
     base: _core.Params,
     data: Data,
     excerpt: Runs,
-    here: float,
+    before: Array,
 ) -> Step:
     """Least squares over the effect's own parameters, from the best of the ladder."""
     if best.params is base:
@@ -118,8 +119,8 @@ def _refined(
     bounds = extended(current.hypothesis, effect, data).free
     free = [Free(n, *bounds[n], 0.0, base[n]) for n in effect.parameters]
     found = fit_windows(excerpt.problem, best.params, free)
-    gain = here - logarithms(excerpt, found.residual)
-    refined = Step(gain, found.params, found.residual - residual_of(excerpt, base))
+    gain = logarithms(excerpt, before) - logarithms(excerpt, found.residual)
+    refined = Step(gain, found.params, found.residual - before)
     if all(
         found.params[n] == base[n] for n in effect.parameters
     ):  # a search for the initial states, and no effect
