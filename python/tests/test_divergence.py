@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sms import Params, _core
+from sms.estimation.chosen_windows import ChosenWindows
 from sms.estimation.divergence import LARGEST, WithinNumbers
 from sms.estimation.least_squares import Free, fit_windows
 from sms.parameters import PARAMETERS
+from sms.rigs.mixed_loops import Mixed, Part
 
 Array = NDArray[np.float64]
 NAME = "coulomb_force"
@@ -37,6 +39,10 @@ class Growing:
 
     rows = 20
     windows = (Stretch(0, 0, 10, 0, 10), Stretch(0, 10, 10, 10, 10))
+    settled: float | None = None
+
+    def settle(self, params: _core.Params) -> None:
+        self.settled = params[NAME]
 
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         residual = np.full(20, params[NAME] - TRUTH)
@@ -67,6 +73,9 @@ class Answering:
     def windows(self) -> Sequence[Stretch]:
         return [Stretch(0, k, 1, k, 1) for k in range(self.rows)]
 
+    def settle(self, params: _core.Params) -> None:
+        """There is no initial state."""
+
     def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
         return np.zeros(self.rows), np.zeros((self.rows, len(free)))
 
@@ -75,6 +84,15 @@ class Answering:
 
     def hidden(self, params: _core.Params, knots: int) -> Array:
         return np.repeat(np.array(self.answers)[:, None], knots, axis=1)
+
+
+def test_searches_are_let_begin_elsewhere_through_every_wrapper() -> None:
+    inner = Growing(100.0, np.nan, np.nan)
+    params = Params()
+    params[NAME] = 42.0
+    chosen = ChosenWindows(WithinNumbers(inner, PARAMETERS), (1,))
+    Mixed((Part(chosen, (0,), 1),), 1, 0).settle(params)
+    assert inner.settled == 42.0
 
 
 def test_what_stays_within_numbers_is_left_as_it_is() -> None:
