@@ -141,10 +141,9 @@ class Judge:
             self.standing = None
             return None
         test = self.detector.baseline.tests[look.test]
-        lag = best_lag(self.detector, look)
         if self.standing is None:
             self.count += 1
-            self._lag = lag
+            lag = self._lag = best_lag(self.detector, look)
             at = look.lags.index(look.lag)
             z, threshold = float(look.z[at, look.test]), float(self.detector.thresholds[look.test])
             first = (
@@ -162,7 +161,10 @@ class Judge:
             first = (a.number, a.raised, a.of, a.test, a.z, a.threshold)
         stretch = self.detector.last(lag)
         number, raised, of, name, z, threshold = first
-        since = stretch[0].begin if self.standing is None else self.standing.since
+        guesses = guesses_of(self.detector.baseline, stretch)
+        since = (
+            onset(self.detector, look, guesses) if self.standing is None else self.standing.since
+        )
         self.standing = Alarm(
             number,
             raised,
@@ -172,20 +174,35 @@ class Judge:
             z,
             threshold,
             places_of(self.detector.baseline, stretch),
-            guesses_of(self.detector.baseline, stretch),
+            guesses,
             lag,
         )
         return self.standing
 
 
 def best_lag(detector: Detector, look: Look) -> int:
-    """Segments since the onset that is most likely for the effect that fits best; of a change that no effect fits,
-    for the test that is highest."""
+    """Segments, up to now, that the effect which fits best explains best; of a change that no effect fits, those since
+    the onset for the test that is highest."""
     found = [(0.0, look.lag)]
     for lag in (n for n in LAGS if LEAST <= n <= len(detector.sums)):
         guesses = guesses_of(detector.baseline, detector.last(lag))
         found.append((guesses[0].chi_square if guesses else 0.0, lag))
     return max(found)[1]
+
+
+def onset(detector: Detector, look: Look, guesses: Sequence[Guess]) -> float:
+    """s: the most likely beginning for the effect that fits best; of a change that no effect fits, for the test that is
+    highest.
+
+    By the detector's statistic, in which a segment counts only so much: one whose initial state went astray would begin
+    the change after itself. Every segment can be the first: the grid on which the detector looks bounds its false
+    alarms, and this is after the alarm.
+    """
+    tests = [t.name for t in detector.baseline.tests]
+    test = tests.index(guesses[0].effect) if guesses else look.test
+    lags = range(1, len(detector.sums) + 1)
+    lag = max(lags, key=lambda n: abs(float(detector.z(n)[test])))
+    return detector.last(lag)[0].begin
 
 
 def sizes(baseline: Baseline, segments: Sequence[Sums]) -> tuple[Array, Array]:

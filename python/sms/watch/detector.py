@@ -90,15 +90,15 @@ class Detector:
         """Another segment."""
         self.sums.append(sums)
         lags = tuple(n for n in LAGS if n <= len(self.sums))
-        z = np.array([self._z(n) for n in lags])
+        z = np.array([self.z(n) for n in lags])
         low, high = self._signs
         right = np.where(z < 0.0, low, high)
         return Look(
             sums.begin, sums.end, z, np.where(right, np.abs(z) / self.thresholds, 0.0), lags
         )
 
-    def _z(self, lag: int) -> Array:
-        """(t,)"""
+    def z(self, lag: int) -> Array:
+        """(t,) of the last segments."""
         b = self.baseline
         last = self.last(lag)
         response, variance = (
