@@ -156,7 +156,7 @@ class Judge:
             )
         else:
             a = self.standing
-            # Segments since the onset that was found first, as long as they are held.
+            # The stretch that was found first and all since, as long as they are held.
             lag = self._lag = min(self._lag + 1, len(self.detector.sums))
             first = (a.number, a.raised, a.of, a.test, a.z, a.threshold)
         stretch = self.detector.last(lag)
