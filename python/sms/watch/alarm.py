@@ -75,7 +75,7 @@ class Alarm:
     guesses: tuple[Guess, ...]
     """Effects that fit, the best first; none where no effect explains it."""
     segments: int = 0
-    """Since the onset."""
+    """Up to now, that the guesses are of."""
 
     @property
     def sentence(self) -> str:
