@@ -704,7 +704,7 @@ class Params:
     @property
     def end_stop_stiffness(self) -> float:
         """
-        stiffness of the contact at both ends of the stroke [N/m]; assumed: metal on metal, 0.2 mm under the static load
+        stiffness of the contact at both ends of the stroke [N/m]; assumed: metal on metal, 0.2 mm under the static load; an elastic buffer gives way by ten times as much
         """
     @end_stop_stiffness.setter
     def end_stop_stiffness(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:

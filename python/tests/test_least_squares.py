@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from sms import Params
 from sms.estimation.least_squares import Free, fit_windows
 
+from validation.random_cases import draw
+
 Array = NDArray[np.float64]
 TURBULENCE, FRICTION = "supply_line_turbulence", "coulomb_force"
 
@@ -59,3 +61,52 @@ def test_what_a_bound_holds(turbulence: float, friction: float, held: list[bool]
     assert found.at_bound == held
     assert found.params[TURBULENCE] == pytest.approx(max(turbulence, 0.0), rel=1e-3, abs=1.0)
     assert found.params[FRICTION] == pytest.approx(min(friction, 500.0), rel=1e-3)
+
+
+@dataclass(frozen=True)
+class Breaking:
+    """Windows of four readings, straight lines of two parameters around 40 and 60 N; of some the piston breaks away,
+    and they miss by far more, above the Coulomb force at which the others begin."""
+
+    lines: Array  # (windows, 4, 2)
+    breaking: int
+    names = (FRICTION, "stiction_force")
+    begin = 38.0
+    steep = 1e3
+
+    @property
+    def rows(self) -> int:
+        return 4 * len(self.lines)
+
+    @property
+    def window(self) -> NDArray[np.int64]:
+        return np.repeat(np.arange(len(self.lines)), 4)
+
+    def evaluate(self, params: Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
+        off = np.array([params[n] for n in self.names]) - (40.0, 60.0)
+        residual, slope = self.lines @ off, self.lines.copy()
+        above = max(0.0, params[FRICTION] - self.begin)
+        residual[: self.breaking] += self.steep * above
+        if above > 0.0:
+            slope[: self.breaking, :, 0] += self.steep
+        columns = [self.names.index(n) for n in free]
+        return residual.reshape(-1), slope.reshape(self.rows, 2)[:, columns]
+
+    def errors(self, params: Params) -> Array:
+        return self.evaluate(params)[0]
+
+
+@pytest.mark.parametrize(("breaking", "moves"), [(0, True), (2, True), (3, False)])
+def test_windows_that_break_off_their_slopes_are_set_aside_if_they_are_few(
+    breaking: int, moves: bool
+) -> None:
+    rng = draw("breaking windows")
+    problem = Breaking(rng.uniform(0.5, 1.5, (10, 4, 2)), breaking)
+    start = Params(**dict(zip(Breaking.names, (Breaking.begin, 50.0), strict=True)))
+    free = [Free(n, 0.0, 500.0, 0.0, start[n]) for n in Breaking.names]
+    found = fit_windows(problem, start, free, window=problem.window)
+    values = [found.params[n] for n in Breaking.names]
+    assert (np.abs(np.subtract(values, (40.0, 60.0))).max() < 1e-3) == moves
+    if breaking:  # and the fit that counts all windows does not move at all
+        held = fit_windows(problem, start, free)
+        assert [held.params[n] for n in Breaking.names] == [Breaking.begin, 50.0]

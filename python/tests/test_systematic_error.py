@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
-from sms.diagnosis.adequacy.systematic_error import Systematic, process
+import pytest
+from plant_support import LEAK, fitted_baseline, write_bench
+from sms import _core
+from sms.diagnosis.adequacy.systematic_error import Systematic, generalised, process
+from sms.diagnosis.hypothesis import cost_of_departure
 from sms.diagnosis.localisation.signal_functions import points
 
 from validation.random_cases import draw
@@ -47,3 +53,14 @@ def test_nothing_is_added_where_noise_alone_is_left() -> None:
         )
         grown.append(np.sqrt(found.covariance[0, 0] + found.move[0] ** 2) / NOISE)
     assert np.median(grown) < 1.1
+
+
+@pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
+def test_what_no_parameter_explains_is_not_put_into_numbers_that_are_known(tmp_path: Path) -> None:
+    """A leak that the model has not: generalised least squares leaves known numbers nearer to what is declared, and is
+    less sure of them, than least squares that takes all of it for their doing."""
+    plain, data = fitted_baseline(write_bench(tmp_path, 41, {"piston_leakage": LEAK}))
+    found = generalised(plain, data)
+    assert cost_of_departure(found) < 0.5 * cost_of_departure(plain)
+    for name in ("mass_flow_gain", "valve_centre"):
+        assert found.standard_error(name) > plain.standard_error(name)

@@ -31,7 +31,7 @@ from sms.parameters import (
     common_parameter,
 )
 
-ALWAYS_UNCERTAIN = ("stiction_shape", *MAPS, *SENSORS)
+ALWAYS_UNCERTAIN = ("stiction_shape", "end_stop_stiffness", "end_stop_damping", *MAPS, *SENSORS)
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
 TURNS, SETTLED = 2, 0.2
 """Of parameters and discrepancy, each for the other; and the change of the logarithm of tau that ends it. Run time."""
@@ -228,11 +228,13 @@ def fit(
     nearby: Mapping[str, Array] | None = None,
     discrepancy: Discrepancy | None = None,
     roughly: bool = False,
+    aside: bool = False,
 ) -> Fitted:
     """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks.
 
     most_steps: Jacobians that are worked out at most. nearby: parameter -> (rows,) change of the residual with it near
-    the initial ones. roughly: of what two specimens of a type differ by, those serve to the end.
+    the initial ones. roughly: of what two specimens of a type differ by, those serve to the end. aside: windows that do
+    not follow their slopes may be set aside.
     """
     free = free_of(hypothesis)
     names = [f.name for f in free]
@@ -240,7 +242,7 @@ def fit(
     kept = {n for n in slopes if roughly and common_parameter(n) in SPECIMENS}
     pull = weights_of(hypothesis, names)
     start = initial or hypothesis.start
-    found = runs.fit(start, free, pull, most_steps, slopes, kept, discrepancy)
+    found = runs.fit(start, free, pull, most_steps, slopes, kept, discrepancy, aside)
     fitted = Fitted(hypothesis, found, np.empty((0, 0)), discrepancy)
     covariance = _covariance(fitted, pull, runs)
     held = np.array(found.at_bound, dtype=bool)
@@ -248,23 +250,11 @@ def fit(
     return replace(fitted, covariance=covariance)
 
 
-def fit_with_discrepancy(
-    hypothesis: Hypothesis,
-    runs: Runs,
-    initial: _core.Params | None = None,
-    near: Discrepancy | None = None,
-    nearby: Mapping[str, Array] | None = None,
-) -> Fitted:
-    """Generalised least squares: parameters and the size of what no parameter explains, in turn (discrepancy.py).
-
-    near: that of a model like it, whose sensitivities to the hidden inputs serve here too. Where residuals are not in
-    units of the noise, plain least squares.
-    """
-    params = initial or hypothesis.start
-    if not runs.whitened:
-        return fit(hypothesis, runs, params)
-    now = near or runs.discrepancy(params, residual_of(runs, params))
-    return settled(fit(hypothesis, runs, params, nearby=nearby, discrepancy=now), runs)
+def fit_with_discrepancy(hypothesis: Hypothesis, runs: Runs) -> Fitted:
+    """Generalised least squares: parameters and the size of what no parameter explains, in turn (discrepancy.py)."""
+    start = hypothesis.start
+    now = runs.discrepancy(start, residual_of(runs, start))
+    return settled(fit(hypothesis, runs, discrepancy=now, aside=True), runs)
 
 
 def settled(fitted: Fitted, runs: Runs) -> Fitted:
@@ -277,7 +267,14 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
         felt = before.tau > 0.0
         if np.all(np.abs(np.log(now.tau[felt] / before.tau[felt])) < SETTLED):
             break
-        fitted = fit(fitted.hypothesis, runs, fitted.params, nearby=fitted.slopes, discrepancy=now)
+        fitted = fit(
+            fitted.hypothesis,
+            runs,
+            fitted.params,
+            nearby=fitted.slopes,
+            discrepancy=now,
+            aside=True,
+        )
     return fitted
 
 

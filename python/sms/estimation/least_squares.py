@@ -5,6 +5,10 @@ squares, Stark and Parker 1995), shortens it while it does not help, and stops w
 nothing. The residuals are in units of the noise, so that is a number: 0.5 of chi-square, and more for a model
 that misses by far more than the noise, whose last digit nobody reads.
 
+A window in which a piston breaks away does not follow its slopes: the moment at which it does so has a kink, and where
+the minimum of that window lies on the kink no step that the others ask for gains anything. A fit that may set windows
+aside does so with those that alone take back what a step promises.
+
 A Jacobian costs as much as many residuals. While steps bring about what they promise it is kept, corrected by what each
 step has shown (Broyden 1965); a fit ends with a Jacobian that was worked out where it ends, if it may work out so many.
 Sensitivities to what hardly moves may be taken over from a model nearby, and are then only corrected so.
@@ -21,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from sms import _core
-from sms.arrays import Array
+from sms.arrays import Array, Index
 from sms.estimation.problem import Problem
 
 ENOUGH = 0.5
@@ -34,6 +38,8 @@ SECANTS = 4
 """Steps with one Jacobian, in the mean, before a fit is given up. Run time."""
 MOST_STEPS = 12
 MOST_HALVINGS = 3
+MOST_ASIDE = 0.2
+"""Share of the windows that a fit may set aside. Judgement: what is left is still what it is asked about."""
 ON_BOUND, ON_EXPECTED = 1e-6, 1e-9
 """Of a parameter's scale: nearer to a bound it is on it; the second of a bound that is the expected value. Numerics."""
 
@@ -93,9 +99,16 @@ class _Objective:
     """|residual|^2 + |pull (value - centre)|^2 of the parameters over their scales, value (free,), and its bounds."""
 
     def __init__(
-        self, problem: Problem, initial: _core.Params, free: list[Free], pull: Array | None
+        self,
+        problem: Problem,
+        initial: _core.Params,
+        free: list[Free],
+        pull: Array | None,
+        window: Index | None,
     ) -> None:
         self._problem = problem
+        self._window = window
+        self._aside = np.zeros(0 if window is None else int(window.max(initial=-1)) + 1, dtype=bool)
         self._initial = initial
         self._free = free
         self._names = [f.name for f in free]
@@ -161,8 +174,33 @@ class _Objective:
         jacobian *= self.scale[numbers]
         return residual, jacobian
 
+    def counted(self, rows: Array) -> Array:
+        """The rows of a residual or a Jacobian (rows, ...) that no window set aside has."""
+        if self._window is None or not self._aside.any():
+            return rows
+        return np.asarray(rows[~self._aside[self._window]])
+
     def cost(self, residual: Array, value: Array) -> float:
-        return float(residual @ residual + np.sum((self.pull @ (value - self.centre)) ** 2))
+        counted = self.counted(residual)
+        return float(counted @ counted + np.sum((self.pull @ (value - self.centre)) ** 2))
+
+    def step(self, at: _Iterate) -> Array:
+        """To where the linearised problem is solved."""
+        slope, residual = self.counted(at.slope), self.counted(at.residual)
+        low, high = self.lower - at.value, self.upper - at.value
+        return _linear_step(slope, residual, self.pull, at.value - self.centre, low, high)
+
+    def set_aside(self, expected: Array, after: Array, promised: float) -> bool:
+        """The windows of which each alone leaves more than expected, residuals (rows,), by all that a step promised, if
+        there are any and not too many."""
+        if self._window is None:
+            return False
+        more = np.bincount(self._window, after**2 - expected**2, len(self._aside))
+        spoil = (more > promised) & ~self._aside
+        if not spoil.any() or np.sum(self._aside | spoil) > MOST_ASIDE * len(self._aside):
+            return False
+        self._aside |= spoil
+        return True
 
 
 @dataclass
@@ -183,13 +221,15 @@ def fit_windows(
     pull: Array | None = None,
     nearby: Mapping[str, Array] | None = None,
     kept: Collection[str] = (),
+    window: Index | None = None,
 ) -> WindowFit:
     """Minimise |residual|^2 + |pull (value - centre)|^2 within the bounds, from `initial`.
 
     pull: (r, free) per unit; each parameter's own if left out. most_steps: Jacobians that are worked out at most.
     nearby: (rows,) sensitivity to each parameter to begin with; those of the parameters in `kept` are never worked out.
+    window: (rows,) which window each row belongs to, if windows that do not follow their slopes may be set aside.
     """
-    objective = _Objective(problem, initial, free, pull)
+    objective = _Objective(problem, initial, free, pull, window)
     at = objective.begun(objective.start, nearby or {})
     worked_out, converged = int(at.exact), not free
     for _ in range(SECANTS * most_steps if free else 0):
@@ -233,9 +273,7 @@ def _line_search(
     The parameters tried last, what they leave, what they gain of the cost, and what the full step promised. A corrected
     Jacobian is given one trial only.
     """
-    here = objective.cost(at.residual, at.value)
-    room = objective.lower - at.value, objective.upper - at.value
-    step = _linear_step(at.slope, at.residual, objective.pull, at.value - objective.centre, *room)
+    here, step = objective.cost(at.residual, at.value), objective.step(at)
     promised = here - objective.cost(at.residual + at.slope @ step, at.value + step)
     tried, after, gained, length = at.value, at.residual, 0.0, 1.0
     for _ in range(MOST_HALVINGS + 1 if at.exact else 1):
@@ -246,6 +284,9 @@ def _line_search(
         gained = here - objective.cost(after, tried)
         if gained > 0.0:
             break
+        expected = at.residual + at.slope @ (tried - at.value)
+        if at.exact and length == 1.0 and objective.set_aside(expected, after, promised):
+            return _line_search(objective, at, little)
         length *= 0.4
     return tried, after, gained, promised
 

@@ -82,21 +82,23 @@ class Runs:
         nearby: Mapping[str, Array] | None = None,
         kept: Collection[str] = (),
         discrepancy: Discrepancy | None = None,
+        aside: bool = False,
     ) -> Solution:
         """Least squares over the free parameters; of a simulated rig pulled by rows (r, free), in at most so many
         steps, with sensitivities (rows,) of a model nearby to begin with, of which some are kept, and generalised by
-        the covariance of a discrepancy.
+        the covariance of a discrepancy. aside: windows that do not follow their slopes may be set aside.
         """
         if not self.whitened:
             return self.kind.solve(self.problem, initial, free)
+        window = self.window if aside else None
         if discrepancy is None:
-            return fit_windows(self.problem, initial, free, most_steps, pull, nearby, kept)
+            return fit_windows(self.problem, initial, free, most_steps, pull, nearby, kept, window)
         root, white = discrepancy.whitener, {}
         if nearby:
             columns = root.whiten(np.column_stack(list(nearby.values())))
             white = dict(zip(nearby, columns.T, strict=True))
         problem = Whitened(self.problem, root)
-        found = fit_windows(problem, initial, free, most_steps, pull, white, kept)
+        found = fit_windows(problem, initial, free, most_steps, pull, white, kept, window)
         return replace(
             found, residual=root.colour(found.residual), jacobian=root.colour(found.jacobian)
         )

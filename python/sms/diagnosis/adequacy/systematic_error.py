@@ -16,7 +16,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Data, Fitted, fit, fit_with_discrepancy, nuisance_of
+from sms.diagnosis.hypothesis import (
+    Data,
+    Fitted,
+    fit,
+    nuisance_of,
+    residual_of,
+)
 from sms.diagnosis.localisation.signal_functions import (
     alike,
     alike_signals,
@@ -29,6 +35,7 @@ from sms.diagnosis.localisation.signal_functions import (
 from sms.diagnosis.localisation.unknown_inputs import thinned
 from sms.diagnosis.thresholds import BENDS
 from sms.estimation.discrepancy import Discrepancy
+from sms.estimation.least_squares import changed
 from sms.estimation.nuisance import Nuisance
 from sms.estimation.variance_components import most_likely
 from sms.estimation.windows import Runs
@@ -42,13 +49,18 @@ LEAST = 1e-3
 def generalised(fitted: Fitted, data: Data) -> Fitted:
     """The same model, its values and their errors by generalised least squares, systematic errors counted.
 
-    The discrepancy is that of the healthy machine where reference records told it, else the one that the model leaves.
+    The discrepancy is that of the healthy machine where reference records told it; else what is left with these causes
+    and every known number as it is declared. What is left once all of them have been fitted is too small for that: they
+    have taken a part of what no parameter explains, and where other records need another part they are wrong.
     """
-    if (allowed := data.allowed(data.identify)) is not None:
-        final = fit(fitted.hypothesis, data.identify, fitted.params, discrepancy=allowed)
-    else:
-        final = fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
-    return with_systematic_error(final, data.identify)
+    h, runs = fitted.hypothesis, data.identify
+    start, allowed = fitted.params, data.allowed(runs)
+    if allowed is None:
+        of_causes = {n for cause in h.causes for n in cause.parameters}
+        known = [n for n in h.known if n not in of_causes]
+        start = changed(start, known, np.array([h.start[n] for n in known]))
+        allowed = runs.discrepancy(start, residual_of(runs, start))
+    return with_systematic_error(fit(h, runs, start, discrepancy=allowed, aside=True), runs)
 
 
 def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
