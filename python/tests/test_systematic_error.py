@@ -35,7 +35,8 @@ def test_the_stated_interval_holds_where_a_law_is_off_along_its_signal() -> None
         )
         within += abs(bias) < 1.96 * np.sqrt(found.covariance[0, 0] + found.move[0] ** 2)
         plain += abs(bias) < 1.96 * NOISE
-    assert within >= 0.85 * TRIALS
+    # 94 % of 720 such trials; fewer than 80 % of 60 once in ten thousand seeds.
+    assert within >= 0.8 * TRIALS
     assert plain < 0.5 * TRIALS
 
 

@@ -250,11 +250,13 @@ def fit(
     return replace(fitted, covariance=covariance)
 
 
-def fit_with_discrepancy(hypothesis: Hypothesis, runs: Runs) -> Fitted:
+def fit_with_discrepancy(
+    hypothesis: Hypothesis, runs: Runs, initial: _core.Params | None = None
+) -> Fitted:
     """Generalised least squares: parameters and the size of what no parameter explains, in turn (discrepancy.py)."""
-    start = hypothesis.start
+    start = initial or hypothesis.start
     now = runs.discrepancy(start, residual_of(runs, start))
-    return settled(fit(hypothesis, runs, discrepancy=now, aside=True), runs)
+    return settled(fit(hypothesis, runs, start, discrepancy=now, aside=True), runs)
 
 
 def settled(fitted: Fitted, runs: Runs) -> Fitted:

@@ -20,6 +20,7 @@ from sms.diagnosis.hypothesis import (
     Data,
     Fitted,
     fit,
+    fit_with_discrepancy,
     nuisance_of,
     residual_of,
 )
@@ -49,18 +50,43 @@ LEAST = 1e-3
 def generalised(fitted: Fitted, data: Data) -> Fitted:
     """The same model, its values and their errors by generalised least squares, systematic errors counted.
 
-    The discrepancy is that of the healthy machine where reference records told it; else what is left with these causes
-    and every known number as it is declared. What is left once all of them have been fitted is too small for that: they
-    have taken a part of what no parameter explains, and where other records need another part they are wrong.
+    The discrepancy is that of the healthy machine where reference records told it. Else it is what the model leaves
+    itself, or what it leaves with these causes and every known number as declared, whichever predicts the validation
+    records better: on a machine that is only roughly the model, numbers that have all been fitted have taken a part of
+    what no parameter explains, and where other records need another part they are wrong. Which of them it is hardly
+    tells how sure the estimates are: of each the larger standard error holds.
     """
     h, runs = fitted.hypothesis, data.identify
-    start, allowed = fitted.params, data.allowed(runs)
-    if allowed is None:
-        of_causes = {n for cause in h.causes for n in cause.parameters}
-        known = [n for n in h.known if n not in of_causes]
-        start = changed(start, known, np.array([h.start[n] for n in known]))
-        allowed = runs.discrepancy(start, residual_of(runs, start))
-    return with_systematic_error(fit(h, runs, start, discrepancy=allowed, aside=True), runs)
+    if (allowed := data.allowed(runs)) is not None:
+        found = fit(h, runs, fitted.params, discrepancy=allowed, aside=True)
+        return with_systematic_error(found, runs)
+    each = [
+        with_systematic_error(found, runs)
+        for found in (
+            fit_with_discrepancy(h, runs, fitted.params),
+            _beside_what_is_declared(fitted, runs),
+        )
+    ]
+    left = [np.mean(residual_of(data.validate, found.params) ** 2) for found in each]
+    better, other = each if left[0] <= left[1] else each[::-1]
+    return _less_sure(better, np.sqrt(np.maximum(np.diag(other.covariance), 0.0)))
+
+
+def _less_sure(fitted: Fitted, least: Array) -> Fitted:
+    """With standard errors (free,) of so much at least, but of what a bound holds."""
+    error = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    grown = np.maximum(np.divide(least, error, out=np.ones(len(error)), where=error > 0.0), 1.0)
+    return replace(fitted, covariance=fitted.covariance * np.outer(grown, grown))
+
+
+def _beside_what_is_declared(fitted: Fitted, runs: Runs) -> Fitted:
+    """Fitted with the discrepancy that its causes leave while every known number is as declared."""
+    h = fitted.hypothesis
+    of_causes = {n for cause in h.causes for n in cause.parameters}
+    known = [n for n in h.known if n not in of_causes]
+    start = changed(fitted.params, known, np.array([h.start[n] for n in known]))
+    allowed = runs.discrepancy(start, residual_of(runs, start))
+    return fit(h, runs, start, discrepancy=allowed, aside=True)
 
 
 def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
@@ -87,13 +113,9 @@ def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
     )
     free = list(fitted.hypothesis.free)
     place = [free.index(n) for n in fitted.movable]
-    covariance = fitted.covariance.copy()
-    before = np.sqrt(np.maximum(np.diag(covariance)[place], 0.0))
-    after = np.sqrt(np.diag(systematic.covariance) + systematic.move**2) / scale
-    grown = np.ones(len(free))
-    ratio = np.divide(after, before, out=np.ones(len(place)), where=before > 0.0)
-    grown[place] = np.maximum(ratio, 1.0)
-    return replace(fitted, covariance=covariance * np.outer(grown, grown))
+    least = np.zeros(len(free))
+    least[place] = np.sqrt(np.diag(systematic.covariance) + systematic.move**2) / scale
+    return _less_sure(fitted, least)
 
 
 @dataclass(frozen=True)
