@@ -27,7 +27,7 @@ from sms.diagnosis.adequacy.residual_energy import (
     tolerated,
 )
 from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
-from sms.diagnosis.adequacy.systematic_error import generalised
+from sms.diagnosis.adequacy.systematic_error import better_predicting, generalised
 from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
@@ -145,7 +145,7 @@ def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted,
     ):
         outcome = fewer
         final = generalised(outcome.final, data) if outcome.found else outcome.final
-    return final, outcome
+    return better_predicting(final, outcome.final, data) if outcome.found else final, outcome
 
 
 def complete(

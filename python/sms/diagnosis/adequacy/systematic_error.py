@@ -50,26 +50,31 @@ LEAST = 1e-3
 def generalised(fitted: Fitted, data: Data) -> Fitted:
     """The same model, its values and their errors by generalised least squares, systematic errors counted.
 
-    The discrepancy is that of the healthy machine where reference records told it. Else it is what the model leaves
-    itself, or what it leaves with these causes and every known number as declared, whichever predicts the validation
-    records better: on a machine that is only roughly the model, numbers that have all been fitted have taken a part of
-    what no parameter explains, and where other records need another part they are wrong. Which of them it is hardly
-    tells how sure the estimates are: of each the larger standard error holds.
+    The discrepancy is that of the healthy machine where reference records told it; else what is left with these causes
+    and every known number as declared: on a machine that is only roughly the model, numbers that have all been fitted
+    have taken a part of what no parameter explains, and where other records need another part they are wrong.
     """
     h, runs = fitted.hypothesis, data.identify
-    if (allowed := data.allowed(runs)) is not None:
-        found = fit(h, runs, fitted.params, discrepancy=allowed, aside=True)
-        return with_systematic_error(found, runs)
-    each = [
-        with_systematic_error(found, runs)
-        for found in (
-            fit_with_discrepancy(h, runs, fitted.params),
-            _beside_what_is_declared(fitted, runs),
-        )
-    ]
-    left = [np.mean(residual_of(data.validate, found.params) ** 2) for found in each]
-    better, other = each if left[0] <= left[1] else each[::-1]
-    return _less_sure(better, np.sqrt(np.maximum(np.diag(other.covariance), 0.0)))
+    start, allowed = fitted.params, data.allowed(runs)
+    if allowed is None:
+        of_causes = {n for cause in h.causes for n in cause.parameters}
+        known = [n for n in h.known if n not in of_causes]
+        start = changed(start, known, np.array([h.start[n] for n in known]))
+        allowed = runs.discrepancy(start, residual_of(runs, start))
+    return with_systematic_error(fit(h, runs, start, discrepancy=allowed, aside=True), runs)
+
+
+def better_predicting(final: Fitted, fitted: Fitted, data: Data) -> Fitted:
+    """The generalised one of a fitted model, or the one with the discrepancy that it leaves itself where that predicts
+    the validation records better: a machine that is nearly the model has no use for a larger one."""
+    if data.healthy is not None:
+        return final
+    other = fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
+
+    def left(found: Fitted) -> float:
+        return float(np.mean(residual_of(data.validate, found.params) ** 2))
+
+    return with_systematic_error(other, data.identify) if left(other) < left(final) else final
 
 
 def _less_sure(fitted: Fitted, least: Array) -> Fitted:
@@ -77,16 +82,6 @@ def _less_sure(fitted: Fitted, least: Array) -> Fitted:
     error = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
     grown = np.maximum(np.divide(least, error, out=np.ones(len(error)), where=error > 0.0), 1.0)
     return replace(fitted, covariance=fitted.covariance * np.outer(grown, grown))
-
-
-def _beside_what_is_declared(fitted: Fitted, runs: Runs) -> Fitted:
-    """Fitted with the discrepancy that its causes leave while every known number is as declared."""
-    h = fitted.hypothesis
-    of_causes = {n for cause in h.causes for n in cause.parameters}
-    known = [n for n in h.known if n not in of_causes]
-    start = changed(fitted.params, known, np.array([h.start[n] for n in known]))
-    allowed = runs.discrepancy(start, residual_of(runs, start))
-    return fit(h, runs, start, discrepancy=allowed, aside=True)
 
 
 def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
