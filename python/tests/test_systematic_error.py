@@ -14,7 +14,8 @@ from sms.diagnosis.localisation.signal_functions import points
 
 from validation.random_cases import draw
 
-ROWS, TRIALS, NOISE = 600, 60, 1.0
+ROWS, TRIALS, NOISE = 600, 240, 1.0
+"""Trials: 94 % are within the interval (720 trials); of 60 fewer than 85 % were, once in two hundred seeds."""
 
 
 def test_the_stated_interval_holds_where_a_law_is_off_along_its_signal() -> None:
@@ -35,8 +36,7 @@ def test_the_stated_interval_holds_where_a_law_is_off_along_its_signal() -> None
         )
         within += abs(bias) < 1.96 * np.sqrt(found.covariance[0, 0] + found.move[0] ** 2)
         plain += abs(bias) < 1.96 * NOISE
-    # 94 % of 720 such trials; fewer than 80 % of 60 once in ten thousand seeds.
-    assert within >= 0.8 * TRIALS
+    assert within >= 0.85 * TRIALS
     assert plain < 0.5 * TRIALS
 
 

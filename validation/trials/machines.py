@@ -21,9 +21,9 @@ import numpy as np
 from sms.cluster import call_from, client_of
 from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
 from sms.diagnosis.adequacy.subset_estimates import found_value
-from sms.diagnosis.adequacy.systematic_error import better_predicting, generalised
+from sms.diagnosis.adequacy.systematic_error import sized
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import Data, Fitted, fit
+from sms.diagnosis.hypothesis import fit
 from sms.diagnosis.simulated import Case
 from sms.io.json_files import json_line
 
@@ -197,7 +197,7 @@ def achievable(case: Case, hidden: Sequence[str]) -> float | None:
         return taken(case, case.after)
     alone = [m for c in classes for m in c if key_of(m.effect) == hidden[0]]
     if len(classes) == len(hidden) == len(alone) == 1:
-        final = _sized(alone[0].fitted, case.data)
+        final = sized(alone[0].fitted, case.data)
         return taken(case, lack_of_fit(final, case.data))
     hypothesis = case.baseline.hypothesis
     start = case.baseline.params.copy()
@@ -205,12 +205,8 @@ def achievable(case: Case, hidden: Sequence[str]) -> float | None:
         hypothesis = hypothesis.with_effect(effects[key])
         if (step := effects[key].step) is not None:  # without a slope at its neutral value
             start[effects[key].parameters[0]] = step
-    final = _sized(fit(hypothesis, case.data.identify, start), case.data)
+    final = sized(fit(hypothesis, case.data.identify, start), case.data)
     return taken(case, lack_of_fit(final, case.data))
-
-
-def _sized(fitted: Fitted, data: Data) -> Fitted:
-    return better_predicting(generalised(fitted, data), fitted, data)
 
 
 # ---- many ------------------------------------------------------------

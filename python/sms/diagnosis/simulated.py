@@ -27,7 +27,7 @@ from sms.diagnosis.adequacy.residual_energy import (
     tolerated,
 )
 from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
-from sms.diagnosis.adequacy.systematic_error import better_predicting, generalised
+from sms.diagnosis.adequacy.systematic_error import better_predicting, generalised, sized
 from sms.diagnosis.adequacy.verdict import decide, inconstancy_of
 from sms.diagnosis.design.closed_loop_performance import in_use
 from sms.diagnosis.design.next_experiment import next_experiment
@@ -269,7 +269,7 @@ def _cause(members: list[Trial], case: Case) -> Cause:
     data, final = case.data, case.outcome.final
 
     def found(m: Trial) -> tuple[ParameterValue, ...]:
-        at = final if m is members[0] else generalised(m.fitted, data)
+        at = final if m is members[0] else sized(m.fitted, data)
         others = m.effect.parameters[1:]
         beside = (value_of(at, n, data.rig.declared(n).value) for n in others)
         return (found_value(at, m.effect, data), *beside)

@@ -284,9 +284,10 @@ def _line_search(
         gained = here - objective.cost(after, tried)
         if gained > 0.0:
             break
-        expected = at.residual + at.slope @ (tried - at.value)
-        if at.exact and length == 1.0 and objective.set_aside(expected, after, promised):
-            return _line_search(objective, at, little)
+        if at.exact and length == 1.0:
+            expected = at.residual + at.slope @ (tried - at.value)
+            if objective.set_aside(expected, after, promised):
+                return _line_search(objective, at, little)
         length *= 0.4
     return tried, after, gained, promised
 

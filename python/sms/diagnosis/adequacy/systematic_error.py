@@ -64,9 +64,14 @@ def generalised(fitted: Fitted, data: Data) -> Fitted:
     return with_systematic_error(fit(h, runs, start, discrepancy=allowed, aside=True), runs)
 
 
+def sized(fitted: Fitted, data: Data) -> Fitted:
+    """The same model with the values and errors that are stated of it."""
+    return better_predicting(generalised(fitted, data), fitted, data)
+
+
 def better_predicting(final: Fitted, fitted: Fitted, data: Data) -> Fitted:
-    """The generalised one of a fitted model, or the one with the discrepancy that it leaves itself where that predicts
-    the validation records better: a machine that is nearly the model has no use for a larger one."""
+    """`final`, a fitted model by generalised least squares; or the same with the discrepancy that the model leaves
+    itself, where that predicts the validation records better: a machine that is nearly the model has a smaller one."""
     if data.healthy is not None:
         return final
     other = fit_with_discrepancy(fitted.hypothesis, data.identify, fitted.params)
