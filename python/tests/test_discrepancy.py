@@ -58,7 +58,7 @@ def test_whitening_undoes_the_covariance_and_colouring_undoes_whitening() -> Non
     values = random.normal(size=(len(residual), 3))
     assert root.colour(root.whiten(values)) == pytest.approx(values, abs=1e-9)
     first = found.rows[0]
-    tau = np.repeat(found.tau, KNOTS)
+    tau = np.repeat(found.tau * found.larger[0], KNOTS)
     covariance = np.eye(SAMPLES) + problem.inputs[first] * tau**2 @ problem.inputs[first].T
     padded = np.zeros((len(residual), SAMPLES))
     padded[first] = covariance
@@ -165,8 +165,43 @@ def test_standard_deviations_of_random_effects_are_recovered() -> None:
     products = np.einsum("sij,sik->sjk", columns, columns)
     score = np.einsum("sij,si->sj", columns, data)
     start, least = np.ones(3), np.full(3, 1e-3)
-    found = most_likely(products, score, group, start, least, 60)
+    found, larger = most_likely(products, score, group, start, least, 60)
     assert found[:2] == pytest.approx(
         truth[:2], rel=0.2
     )  # of 400 each: 3.5 % is one standard error
     assert found[2] < 0.1  # what noise alone looks like: 0.03
+    assert larger == pytest.approx(np.ones((sets, 3)), abs=0.8)  # of 10 each: 0.16 is one
+
+
+def test_a_few_sets_with_far_larger_effects_do_not_say_how_large_all_are() -> None:
+    random = draw("sets with larger effects")
+    truth, each, sets, rows = 1.0, 10, 30, 40
+    group = np.zeros(each, dtype=int)
+    times = np.ones(sets)
+    times[:2] = 10.0 ** random.uniform(1.5, 3.0, size=2)
+    columns = random.normal(size=(sets, rows, each))
+    effects = truth * times[:, None] * random.normal(size=(sets, each))
+    data = np.einsum("sij,sj->si", columns, effects) + random.normal(size=(sets, rows))
+    products = np.einsum("sij,sik->sjk", columns, columns)
+    score = np.einsum("sij,si->sj", columns, data)
+    found, larger = most_likely(products, score, group, np.ones(1), np.full(1, 1e-3), 60)
+    assert found[0] == pytest.approx(truth, rel=0.3)  # of 280: 4 % is one standard error
+    assert found[0] * larger[:2, 0] == pytest.approx(times[:2], rel=0.8)  # of 10 each
+
+
+def test_a_window_in_which_nothing_moves_does_not_drown_the_others() -> None:
+    """A piston that hangs on its stop hardly answers a force: what is left there asks for an enormous one."""
+    random = draw("a window that hangs")
+    problem = drawn(random)
+    residual = residual_of(problem, (3.0, 1.0), random)
+    usual = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
+    hangs = problem.windows[int(random.integers(WINDOWS))]
+    rows = slice(hangs.row, hangs.row + hangs.rows)
+    problem.inputs[rows] *= 1e-2
+    residual[rows] += 100.0 * random.normal(size=hangs.rows)
+    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
+    assert found.tau == pytest.approx(usual.tau, rel=0.5)
+    white = found.whitener.whiten(residual)
+    others = np.ones(len(residual), dtype=bool)
+    others[rows] = False
+    assert np.mean(white[others] ** 2) == pytest.approx(1.0, abs=0.3)

@@ -82,9 +82,7 @@ def foreign(
     workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
 ) -> None:
     """Diagnose the data sets of another simulator blind, open the keys, and count."""
-    sets = [s for s in sets_of(folder) if not only or s in only.split(",")]
-    if not sets:
-        raise InputError(f"{folder}: there is no set with a rig.toml and a key in keys/")
+    sets = chosen_sets(folder, only)
     console, answers = Console(), []
     cores = len(os.sched_getaffinity(0))
     os.environ.update(SMS_THREADS=str(max(cores // workers, 1)), OPENBLAS_NUM_THREADS="1")
@@ -106,8 +104,22 @@ def foreign(
 
 
 def sets_of(folder: Path) -> list[str]:
-    """The names of the sets that have a key."""
-    return sorted(k.stem for k in (folder / "keys").glob("*.json") if (folder / k.stem).is_dir())
+    """The names of the sets that have a key; InputError if there is none."""
+    sets = sorted(k.stem for k in (folder / "keys").glob("*.json") if (folder / k.stem).is_dir())
+    if not sets:
+        raise InputError(f"{folder}: there is no set with a rig.toml and a key in keys/")
+    return sets
+
+
+def chosen_sets(folder: Path, only: str) -> list[str]:
+    """Those of a folder, or those named, separated by commas; InputError for a name that is no set."""
+    sets = sets_of(folder)
+    wanted = [name.strip() for name in only.split(",") if name.strip()]
+    if unknown := [name for name in wanted if name not in sets]:
+        raise InputError(
+            f"--only: {folder} has no set {', '.join(unknown)}; it has {sets[0]} to {sets[-1]}"
+        )
+    return wanted or sets
 
 
 def answer_set(folder: Path, name: str, reference: bool) -> Answer:

@@ -228,13 +228,13 @@ def fit(
     nearby: Mapping[str, Array] | None = None,
     discrepancy: Discrepancy | None = None,
     roughly: bool = False,
-    aside: bool = False,
+    may_set_aside: bool = False,
 ) -> Fitted:
     """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks.
 
     most_steps: Jacobians that are worked out at most. nearby: parameter -> (rows,) change of the residual with it near
-    the initial ones. roughly: of what two specimens of a type differ by, those serve to the end. aside: windows that do
-    not follow their slopes may be set aside.
+    the initial ones. roughly: of what two specimens of a type differ by, those serve to the end. may_set_aside:
+    windows that do not follow their slopes may be set aside.
     """
     free = free_of(hypothesis)
     names = [f.name for f in free]
@@ -242,7 +242,7 @@ def fit(
     kept = {n for n in slopes if roughly and common_parameter(n) in SPECIMENS}
     pull = weights_of(hypothesis, names)
     start = initial or hypothesis.start
-    found = runs.fit(start, free, pull, most_steps, slopes, kept, discrepancy, aside)
+    found = runs.fit(start, free, pull, most_steps, slopes, kept, discrepancy, may_set_aside)
     fitted = Fitted(hypothesis, found, np.empty((0, 0)), discrepancy)
     covariance = _covariance(fitted, pull, runs)
     held = np.array(found.at_bound, dtype=bool)
@@ -251,12 +251,18 @@ def fit(
 
 
 def fit_with_discrepancy(
-    hypothesis: Hypothesis, runs: Runs, initial: _core.Params | None = None
+    hypothesis: Hypothesis,
+    runs: Runs,
+    initial: _core.Params | None = None,
+    alike: bool = False,
 ) -> Fitted:
-    """Generalised least squares: parameters and the size of what no parameter explains, in turn (discrepancy.py)."""
+    """Generalised least squares: parameters and the size of what no parameter explains, in turn (discrepancy.py).
+
+    alike: that size is one for all windows, as it has to be to hold on other records.
+    """
     start = initial or hypothesis.start
-    now = runs.discrepancy(start, residual_of(runs, start))
-    return settled(fit(hypothesis, runs, start, discrepancy=now, aside=True), runs)
+    now = runs.discrepancy(start, residual_of(runs, start), alike)
+    return settled(fit(hypothesis, runs, start, discrepancy=now, may_set_aside=True), runs)
 
 
 def settled(fitted: Fitted, runs: Runs) -> Fitted:
@@ -275,7 +281,7 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
             fitted.params,
             nearby=fitted.slopes,
             discrepancy=now,
-            aside=True,
+            may_set_aside=True,
         )
     return fitted
 

@@ -37,7 +37,7 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     """
     assert data.reference is not None
     h, runs = hypothesis, data.reference
-    fitted = fit_with_discrepancy(h, runs)
+    fitted = fit_with_discrepancy(h, runs, alike=True)
     jacobian = fitted.whiten(fitted.fit.jacobian)
     residual = fitted.whiten(fitted.fit.residual)
     pull = weights_of(h, list(h.free))

@@ -7,10 +7,11 @@ residual of a window has the covariance
 
   V = I + H diag(tau^2) H'
 
-in units of the noise. Generalised least squares with V asks of a parameter what a wandering input cannot do as well: a
-standard error grows where the discrepancy can imitate it, and no parameter is driven to its bound by a friction or a
-flow that is a little off. The tau come from the data, by maximum marginal likelihood (variance_components.py); of an
-equation that is right they go to nothing.
+in units of the noise. A window in which the piston hangs on a stop or breaks away asks for inputs far larger than the
+others do: they are larger there, and say little of tau (Student's t, variance_components.py). Generalised least squares
+with V asks of a parameter what a wandering input cannot do as well: a standard error grows where the discrepancy can
+imitate it, and no parameter is driven to its bound by a friction or a flow that is a little off. The tau come from the
+data, by maximum marginal likelihood; of an equation that is right they go to nothing.
 """
 
 from __future__ import annotations
@@ -56,13 +57,22 @@ class Discrepancy:
     """(windows, equations * knots, equations * knots): of the inputs with each other."""
     tau: Array
     """(equations,): standard deviation of each equation's input."""
+    larger: Array | float = 1.0
+    """(windows, equations): by which factor it is larger in a window."""
+    alike: bool = False
+    """Whether it is the same in all windows, as one is that has to hold on other records."""
 
     @classmethod
     def of(
-        cls, problem: Shot, params: _core.Params, equations: int, residual: Array
+        cls,
+        problem: Shot,
+        params: _core.Params,
+        equations: int,
+        residual: Array,
+        alike: bool = False,
     ) -> Discrepancy:
         """As likely as can be for the residual (rows,) of a model with these parameters."""
-        blank = cls.sized(problem, params, np.zeros(equations))
+        blank = replace(cls.sized(problem, params, np.zeros(equations)), alike=alike)
         level = max(float(np.linalg.norm(residual)) / np.sqrt(len(blank.rows) * KNOTS), LEAST)
         return replace(blank, tau=blank.moving(level)).fitted_to(residual)
 
@@ -87,24 +97,21 @@ class Discrepancy:
         score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])
         group = np.repeat(np.arange(equations), self.inputs.shape[1] // max(equations, 1))
         start = np.maximum(self.tau, 30.0 * least)
-        tau = most_likely(self.products, score, group, start, least, ITERATIONS)
-        return replace(self, tau=tau)
+        tau, larger = most_likely(self.products, score, group, start, least, ITERATIONS, self.alike)
+        return replace(self, tau=tau, larger=larger)
 
     @cached_property
     def whitener(self) -> Whitener:
         """Multiplies by the inverse root of the covariance."""
-        d = self._of_columns(self.tau)
-        value, vector = np.linalg.eigh(d[:, None] * self.products * d)
+        tau = self.tau * np.broadcast_to(self.larger, (len(self.rows), len(self.tau)))
+        d = np.repeat(tau, self.inputs.shape[1] // max(len(self.tau), 1), axis=1)
+        value, vector = np.linalg.eigh(d[:, :, None] * self.products * d[:, None, :])
         value = np.maximum(value, 1e-12)
         bases = [
-            self.inputs[r] @ (d[:, None] * v / np.sqrt(s))
-            for r, s, v in zip(self.rows, value, vector, strict=True)
+            self.inputs[r] @ (size[:, None] * v / np.sqrt(s))
+            for r, size, s, v in zip(self.rows, d, value, vector, strict=True)
         ]
         return Whitener(self.rows, bases, np.sqrt(1.0 + value))
-
-    def _of_columns(self, tau: Array) -> Array:
-        """(equations * knots,)"""
-        return np.repeat(tau, self.inputs.shape[1] // max(len(tau), 1))
 
 
 @dataclass(frozen=True)

@@ -82,15 +82,15 @@ class Runs:
         nearby: Mapping[str, Array] | None = None,
         kept: Collection[str] = (),
         discrepancy: Discrepancy | None = None,
-        aside: bool = False,
+        may_set_aside: bool = False,
     ) -> Solution:
         """Least squares over the free parameters; of a simulated rig pulled by rows (r, free), in at most so many
         steps, with sensitivities (rows,) of a model nearby to begin with, of which some are kept, and generalised by
-        the covariance of a discrepancy. aside: windows that do not follow their slopes may be set aside.
+        the covariance of a discrepancy. may_set_aside: windows that do not follow their slopes may be set aside.
         """
         if not self.whitened:
             return self.kind.solve(self.problem, initial, free)
-        window = self.window if aside else None
+        window = self.window if may_set_aside else None
         if discrepancy is None:
             return fit_windows(self.problem, initial, free, most_steps, pull, nearby, kept, window)
         root, white = discrepancy.whitener, {}
@@ -103,9 +103,12 @@ class Runs:
             found, residual=root.colour(found.residual), jacobian=root.colour(found.jacobian)
         )
 
-    def discrepancy(self, params: _core.Params, residual: Array) -> Discrepancy:
-        """The random hidden inputs for which the residual (rows,) of these parameters is most likely."""
-        return Discrepancy.of(self.problem, params, len(self.kind.hidden), residual)
+    def discrepancy(
+        self, params: _core.Params, residual: Array, alike: bool = False
+    ) -> Discrepancy:
+        """The random hidden inputs for which the residual (rows,) of these parameters is most likely; if `alike`, those
+        that are equally large in all windows."""
+        return Discrepancy.of(self.problem, params, len(self.kind.hidden), residual, alike)
 
     def discrepancy_of(self, params: _core.Params, tau: Array) -> Discrepancy:
         """Random hidden inputs of standard deviations (equations,) that other records told."""

@@ -64,9 +64,7 @@ def run_machines(
 
 def run_foreign(folder: Path, out: Path) -> list[on_machines.Round]:
     """The data sets of another simulator, by every method, one after another."""
-    if not (count := len(sets_of(folder))):
-        raise InputError(f"{folder}: there is no set with a rig.toml and a key in keys/")
-    with PeerProcess(environment()) as peers, _progress(count) as each:
+    with PeerProcess(environment()) as peers, _progress(len(sets_of(folder))) as each:
         return on_foreign.play_folder(folder, out / "foreign.jsonl", peers.ask, each)
 
 

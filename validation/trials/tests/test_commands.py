@@ -10,6 +10,7 @@ from sms.io import InputError
 from typer.testing import CliRunner
 
 from validation.trials.__main__ import app
+from validation.trials.foreign import chosen_sets
 from validation.trials.machine_commands import as_dict
 from validation.trials.machines import SORTS, tasks
 from validation.trials.scoring import Outcome
@@ -40,3 +41,16 @@ def test_trials_of_one_sort() -> None:
     assert [(t.seed, t.sort) for t in healthy[::2]] == [(7 + k, "healthy") for k in range(10)]
     with pytest.raises(InputError, match="did you mean 'healthy'"):
         CliRunner().invoke(app, ["tank", "--only", "healty"], catch_exceptions=False)
+
+
+def test_a_set_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="there is no set with"):
+        chosen_sets(tmp_path, "set01")
+    (tmp_path / "keys").mkdir()
+    for name in ("set01", "set02"):
+        (tmp_path / name).mkdir()
+        (tmp_path / "keys" / f"{name}.json").write_text("{}", encoding="utf-8")
+    assert chosen_sets(tmp_path, "") == ["set01", "set02"]
+    assert chosen_sets(tmp_path, "set02") == ["set02"]
+    with pytest.raises(InputError, match="has no set set99; it has set01 to set02"):
+        chosen_sets(tmp_path, "set02, set99")

@@ -61,7 +61,7 @@ def generalised(fitted: Fitted, data: Data) -> Fitted:
         known = [n for n in h.known if n not in of_causes]
         start = changed(start, known, np.array([h.start[n] for n in known]))
         allowed = runs.discrepancy(start, residual_of(runs, start))
-    return with_systematic_error(fit(h, runs, start, discrepancy=allowed, aside=True), runs)
+    return with_systematic_error(fit(h, runs, start, discrepancy=allowed, may_set_aside=True), runs)
 
 
 def sized(fitted: Fitted, data: Data) -> Fitted:
@@ -188,7 +188,10 @@ class Systematic:
         moved = np.sqrt(np.bincount(group, np.diag(products)) / np.bincount(group))
         unit = 1.0 / np.maximum(moved, 1e-300)
         sigma = unit * float(np.linalg.norm(residual)) / np.sqrt(noise * len(group))
-        sigma = most_likely(products[None], score[None], group, sigma, LEAST * unit, ITERATIONS)
+        least = LEAST * unit
+        sigma, _ = most_likely(
+            products[None], score[None], group, sigma, least, ITERATIONS, alike=True
+        )
         d = sigma[group]
         together = np.hstack([jacobian, functions * d])
         information = together.T @ together
