@@ -3,9 +3,9 @@
 Each of the valve's two open edges is a component after ISO 6358 whose conductance C, critical
 ratio b and index m were measured over the distance of the command from the valve's centre
 (dissertation, Table 5.2). They are read here from a fine even grid, between whose points they run
-straight; the grid itself is Steffen's curve through the printed rows, straight to zero below the
-first. (Another curve differs by 2 percent between the first rows; a slow piston shows that, and a
-healthy rig would then not be one.)
+straight; the grid itself is Steffen's curve through the printed rows, or straight between them, and
+straight to zero below the first: the source does not say which. The two differ most between the
+first rows (`python -m validation.published.valve_tables`).
 """
 
 from __future__ import annotations
@@ -67,8 +67,9 @@ _TABLE_5_2 = """
 
 
 @cache
-def valve_map() -> Array:
-    """Columns charge C, b, m and discharge C, m over |command - centre| in GRID_STEP, (501, 5)."""
+def valve_map(straight: bool = False) -> Array:
+    """Columns charge C, b, m and discharge C, m over |command - centre| in GRID_STEP, (501, 5); Steffen's curve
+    through the rows, or straight between them."""
     rows = np.array([line.split() for line in _TABLE_5_2.split("\n") if line], dtype=np.float64)
     rows[:, [1, 4]] *= 1e-9
     opening, values = rows[:, 0], rows[:, 1:]
@@ -76,7 +77,9 @@ def valve_map() -> Array:
     slopes[0] = values[0] / opening[0] * [1.0, 0.0, 0.0, 1.0, 0.0]
     grid = GRID_STEP * np.arange(GRID_POINTS)
     inside = np.clip(grid, opening[0], opening[-1])
-    columns = CubicHermiteSpline(opening, values, slopes)(inside)
+    columns = np.column_stack([np.interp(inside, opening, column) for column in values.T])
+    if not straight:
+        columns = CubicHermiteSpline(opening, values, slopes)(inside)
     columns[:, [0, 3]] *= np.minimum(1.0, grid / FIRST_ROW)[:, None]
     return np.ascontiguousarray(columns)
 

@@ -5,6 +5,8 @@ What is hidden in a trial is one thing; this is what no model has, and what nobo
 - Flow: the conductance of each metering edge (charge and discharge, of either port) is off by a smooth random function
   of the opening, charge and discharge each with the level as RMS over the openings that runs use. A core that knows one
   smooth error of charge and one of discharge does not have these four.
+- The valve's tables are read by Steffen's curve, as the core does, or straight between rows: the source does not say
+  which, and where the valve begins to open the two differ by more than all else here.
 - Friction: so is the sliding friction, over the signed speed.
 - Sensors are not quite linear: a bow along the span over which they were calibrated, a tenth of the level of that span
   to either side of its best straight line. Data sheets of position transducers and pressure transmitters say 0.1 to 0.5
@@ -16,8 +18,9 @@ What is hidden in a trial is one thing; this is what no model has, and what nobo
   between two samples; in the second it says `hold = "previous"`.
 - The converter rounds to the nearest step, or down.
 
-At level 0 nothing is drawn: the command runs straight from one record sample to the next. Shapes, signs, log rate and
-rounding are a seed's; the level only scales what has a size, so that two levels of a seed can be compared.
+At level 0 nothing is drawn: the command runs straight from one record sample to the next. Shapes, signs, log rate,
+rounding and how tables are read are a seed's; the level only scales what has a size, so that two levels of a seed can
+be compared.
 """
 
 from __future__ import annotations
@@ -86,11 +89,12 @@ class MapErrors:
     charge: SmoothFunction  # over the opening, V from the centre, signed
     discharge: SmoothFunction
     friction: SmoothFunction  # over the speed, m/s, signed
+    straight: bool = False  # the valve's tables are read straight between rows
 
     @property
     def maps(self) -> Maps:
         """The maps with these errors."""
-        return off_by(self.charge, self.discharge, self.friction)
+        return off_by(self.charge, self.discharge, self.friction, self.straight)
 
 
 NOTHING = SmoothFunction(0.0, (0.0,), (0.0,))
@@ -142,13 +146,15 @@ def draw_imperfection(
     seed: np.random.SeedSequence,
 ) -> Imperfection:
     """A machine of so many axes whose instruments read `signals`, every draw from a stream of its own."""
-    for_maps, for_bows, for_logger = (np.random.default_rng(s) for s in seed.spawn(3))
+    for_maps, for_bows, for_logger, for_tables = (np.random.default_rng(s) for s in seed.spawn(4))
     level = 0.01 * percent
+    straight = bool(for_tables.integers(2))
     errors = tuple(
         MapErrors(
             draw_smooth(level, OPENING, for_maps),
             draw_smooth(level, OPENING, for_maps),
             draw_smooth(level, SPEED, for_maps),
+            straight,
         )
         for _ in range(axes)
     )

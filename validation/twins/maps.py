@@ -27,14 +27,14 @@ class Maps(NamedTuple):
 
 
 @cache
-def exact() -> Maps:
-    """The maps as the source has them."""
-    return Maps(np.stack([valve_map(), valve_map()]), np.zeros(SPEED_POINTS))
+def exact(straight: bool = False) -> Maps:
+    """The maps as the source has them; the valve's tables are read by Steffen's curve, or straight between rows."""
+    return Maps(np.stack([valve_map(straight)] * 2), np.zeros(SPEED_POINTS))
 
 
-def off_by(charge: Curve, discharge: Curve, friction: Curve) -> Maps:
+def off_by(charge: Curve, discharge: Curve, friction: Curve, straight: bool = False) -> Maps:
     """The maps with relative errors."""
-    valve = exact().valve.copy()
+    valve = exact(straight).valve.copy()
     away: Array = GRID_STEP * np.arange(GRID_POINTS, dtype=np.float64)
     speeds: Array = SPEED_STEP * np.arange(SPEED_POINTS, dtype=np.float64) - TOP_SPEED
     for side, opening in enumerate((away, -away)):

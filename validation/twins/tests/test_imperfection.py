@@ -14,7 +14,7 @@ from sms.io.rig import load_rig
 
 from validation import random_cases
 from validation.twins import imperfection
-from validation.twins.air import Array, edges, valve_map
+from validation.twins.air import GRID_POINTS, GRID_STEP, Array, edges, valve_map
 from validation.twins.clock import holding
 from validation.twins.draw import RIGS, draw, draw_trial, open_truth, seeds_of
 from validation.twins.imperfection import (
@@ -95,13 +95,29 @@ def test_every_edge_of_the_valve_is_off_by_its_own_error() -> None:
     for sign in (1.0, -1.0):
         found, right = (
             np.array([edges(p, 0.0, valve, p.valve_centre + sign * u) for u in volts])
-            for valve in (off.maps.valve, exact().valve)
+            for valve in (off.maps.valve, exact(axis.straight).valve)
         )
         for column, error in ((1, axis.charge), (4, axis.discharge)):
             ratio = found[:, column] / right[:, column] - 1.0
             assert np.allclose(ratio, error(sign * volts), atol=1e-5)
         assert np.array_equal(found[:, [2, 3, 5]], right[:, [2, 3, 5]])
     assert np.array_equal(exact().valve[0], valve_map())
+
+
+def test_tables_are_read_straight_between_rows_or_by_a_curve_and_alike_at_the_rows() -> None:
+    drawn = {
+        draw_imperfection(1.0, 1, ("extension",), (0.005,), seeds_of(k)[6]).axes[0].straight
+        for k in range(20)
+    }
+    assert drawn == {True, False}
+    steps = GRID_STEP * np.arange(GRID_POINTS)
+    rows = np.arange(56, 400)
+    for column in (0, 3):
+        curve, straight = (valve_map(s)[:, column] for s in (False, True))
+        assert np.interp(0.930, steps, straight) == pytest.approx(np.interp(0.930, steps, curve))
+        assert np.max(np.abs(straight[rows] / curve[rows] - 1.0)) > 0.03
+    linear = np.interp(0.62, (0.559, 0.680), (0.413153e-9, 0.954101e-9))
+    assert np.interp(0.62, steps, valve_map(True)[:, 0]) == pytest.approx(linear)
 
 
 def test_sliding_friction_is_off_by_its_error() -> None:
