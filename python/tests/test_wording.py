@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sms.diagnosis.remainder import Hidden, Shape, Unexplained
+from sms.diagnosis.result import Cause, ParameterValue
+from sms.diagnosis.wording import explained
 from sms.diagnosis.wording_simulated import remainder_in_words, sentence, shape_in_words
 
 LOWER, READING = "balance of the lower tank", "reading of level_lower"
@@ -40,3 +42,18 @@ def test_what_is_left_lies_along_a_signal_of_its_own_equation_only() -> None:
     )
     other = replace(left, curve=replace(SHAPE, equation=READING))
     assert remainder_in_words(other, units).endswith("the balance of the lower tank.")
+
+
+def test_further_parameters_of_a_cause_are_named_beside_its_size() -> None:
+    leak = Cause(
+        "valve_leakage", None, "missing term", "valve", "leakage past the valve spool", "",
+        ("valve_leakage",), (),
+        (
+            ParameterValue("valve_leakage", 3.66e-10, 0.69e-10, "m^3/(s Pa)", 0.0),
+            ParameterValue("leakage_critical_ratio", 0.0, 0.0, "1", 0.0),
+        ),
+        1e-6, {}, "", 1.0,
+    )  # fmt: skip
+    assert explained(leak) == (
+        "leakage past the valve spool (0.0366 ± 0.0069 l/s per bar, leakage critical ratio 0)"
+    )

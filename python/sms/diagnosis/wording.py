@@ -50,8 +50,15 @@ def capital(text: str) -> str:
 
 
 def amount(cause: Cause) -> str:
-    """How much: "0.75 ± 0.01 N per bar", or old -> new for a shifted parameter."""
-    return ", ".join(_amount(p, cause.kind == "shifted parameter") for p in cause.parameters)
+    """How much: "0.75 ± 0.01 N per bar", or old -> new for a shifted parameter; of other parameters also which."""
+    shifted = cause.kind == "shifted parameter"
+    return _listed(cause.parameters, [_amount(p, shifted) for p in cause.parameters])
+
+
+def _listed(parameters: Sequence[ParameterValue], sizes: Sequence[str]) -> str:
+    """An effect is known by its first parameter; the others are named."""
+    names = ["", *(f"{spaced(p.name.partition(':')[0])} " for p in parameters[1:])]
+    return ", ".join(name + size for name, size in zip(names, sizes, strict=False))
 
 
 def _amount(p: ParameterValue, shifted: bool) -> str:
@@ -66,8 +73,8 @@ def explained(cause: Cause) -> str:
         return f"{cause.title} ({amount(cause)})"
     rivals = [f"{cause.title} ({amount(cause)})"]
     for rival in cause.alternatives:
-        sizes = ", ".join(_amount(p, p.old_value != 0.0) for p in rival.parameters)
-        rivals.append(f"{rival.title} ({sizes})")
+        sizes = [_amount(p, p.old_value != 0.0) for p in rival.parameters]
+        rivals.append(f"{rival.title} ({_listed(rival.parameters, sizes)})")
     return f"one of {'; '.join(rivals)} (these signals cannot distinguish between them)"
 
 
