@@ -17,7 +17,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import typer
 from rich.console import Console
@@ -30,18 +30,32 @@ from sms.io.write import write_text_atomically
 from validation.trials.scoring import LARGEST_CLASS
 from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 
-SIZES: dict[str, tuple[str, float]] = {
-    "extra_lap_each_side_V": ("dead_band_change", 0.0),
-    "true_centre_V": ("valve_centre", 0.0),
-    "C_leak_m3_s_Pa": ("valve_leakage", 0.0),
-    "sigma_N_s_m": ("viscous_friction", 0.0),
-    "bench_mass_kg": ("moving_mass", 0.0),
-    "recording_delay_s": ("clock_skew_extension", 0.0),
-    "offset_m": ("sensor_offset_extension", 0.0),
-    "gain": ("sensor_gain_extension", -1.0),
+
+class Size(NamedTuple):
+    """How a number of a key is counted here."""
+
+    parameter: str
+    added: float = 0.0
+    times: str = ""
+    """A number among those that were drawn for the machine, by which it is multiplied; 1 where there is none."""
+
+
+SIZES = {
+    "extra_lap_each_side_V": Size("dead_band_change"),
+    "true_centre_V": Size("valve_centre"),
+    "C_leak_m3_s_Pa": Size("valve_leakage", times="gain"),
+    "sigma_N_s_m": Size("viscous_friction"),
+    "bench_mass_kg": Size("moving_mass"),
+    "recording_delay_s": Size("clock_skew_extension"),
+    "offset_m": Size("sensor_offset_extension"),
+    "gain": Size("sensor_gain_extension", added=-1.0),
 }
-"""A key's number -> the parameter that has the same meaning here, and what is added to it. Others are laws of that
-simulator's own, without a parameter here."""
+"""A key's number -> the parameter that has the same meaning here. Others are laws of that simulator's own, without a
+parameter here.
+
+A leak is added there to the conductance of the valve's tables, and the mass-flow gain of a cylinder multiplies both;
+here it is the conductance of the gap itself (docs/trials.md).
+"""
 
 
 @dataclass(frozen=True)
@@ -149,7 +163,7 @@ def scored(name: str, key: dict[str, Any], answer: Diagnosis, seconds: float) ->
         right,
         wrong,
         sum(gains) / len(gains) if gains and named else None,
-        within(key["true_values"], answer) if right else None,
+        within(key, answer) if right else None,
         seconds,
     )
 
@@ -172,17 +186,18 @@ def judged(
     return found and not wrong, wrong
 
 
-def within(true_values: dict[str, Any], answer: Diagnosis) -> bool | None:
+def within(key: dict[str, Any], answer: Diagnosis) -> bool | None:
     """Whether the sizes that can be compared lie within two standard errors."""
     inside = []
-    for number, (parameter, added) in SIZES.items():
-        if number not in true_values:
+    for number, size in SIZES.items():
+        if number not in key["true_values"]:
             continue
+        drawn = key.get("drawn", {})
+        truth = float(key["true_values"][number]) * float(drawn.get(size.times, 1.0)) + size.added
         owners: list[Cause | Member] = [*answer.causes]
         owners += [m for c in answer.causes for m in c.alternatives]
         for value in (p for owner in owners for p in owner.parameters):
-            if value.name.partition(":")[0] == parameter:
-                truth = float(true_values[number]) + added
+            if value.name.partition(":")[0] == size.parameter:
                 inside.append(abs(value.value - truth) <= 1.96 * value.standard_error)
     return all(inside) if inside else None
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from sms.io import InputError
 from typer.testing import CliRunner
 
 from validation.trials.__main__ import app
-from validation.trials.foreign import chosen_sets
+from validation.trials.foreign import chosen_sets, within
 from validation.trials.machine_commands import as_dict
 from validation.trials.machines import SORTS, tasks
 from validation.trials.scoring import Outcome
@@ -54,3 +56,19 @@ def test_a_set_that_is_not_there_is_named(tmp_path: Path) -> None:
     assert chosen_sets(tmp_path, "set02") == ["set02"]
     with pytest.raises(InputError, match="has no set set99; it has set01 to set02"):
         chosen_sets(tmp_path, "set02, set99")
+
+
+def test_sizes_are_compared_as_that_simulator_counts_them() -> None:
+    def answer(parameter: str, value: float) -> Any:
+        found = SimpleNamespace(name=parameter, value=value, standard_error=0.1 * abs(value))
+        cause = SimpleNamespace(parameters=(found,), alternatives=())
+        return SimpleNamespace(causes=(cause,))
+
+    key = {"true_values": {"C_leak_m3_s_Pa": 2e-10}, "drawn": {"gain": 1.5}}
+    assert within(key, answer("valve_leakage", 3e-10))
+    assert not within(key, answer("valve_leakage", 2e-10))
+    assert within({"true_values": {"C_leak_m3_s_Pa": 2e-10}}, answer("valve_leakage", 2e-10))
+    assert within({"true_values": {"gain": 1.04}}, answer("sensor_gain_extension", 0.04))
+    assert (
+        within({"true_values": {"a_law_of_its_own": 1.0}}, answer("valve_leakage", 2e-10)) is None
+    )
