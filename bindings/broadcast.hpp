@@ -9,7 +9,7 @@
 
 namespace sms_python {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Array = py::array_t<double, kInOrder>;
 
 template <std::size_t Results, typename Equation, std::size_t... I>
 std::array<Array, Results> broadcast(const Equation& equation, const std::array<Array, sizeof...(I)>& given,
@@ -38,6 +38,26 @@ template <std::size_t Results, typename Equation, typename... Arrays>
 std::array<Array, Results> broadcast(const Equation& equation, const Arrays&... arrays) {
   return broadcast<Results>(equation, std::array<Array, sizeof...(Arrays)>{arrays...},
                             std::make_index_sequence<sizeof...(Arrays)>());
+}
+
+// equation(double...) over arrays that broadcast: an array, or the number alone where all of them are numbers.
+template <typename Equation, typename... Arrays>
+py::object each(const Equation& equation, const Arrays&... arrays) {
+  std::vector<py::ssize_t> common;
+  for (const py::array* const array : {static_cast<const py::array*>(&arrays)...}) {
+    const auto n = static_cast<std::size_t>(array->ndim());
+    common.insert(common.begin(), n > common.size() ? n - common.size() : 0, 1);
+    for (std::size_t k = 0; k < n; ++k) {
+      py::ssize_t& size = common[common.size() - n + k];
+      const py::ssize_t own = array->shape(static_cast<py::ssize_t>(k));
+      if (own != size && own != 1 && size != 1) {
+        throw py::value_error("arrays of " + std::to_string(size) + " and of " + std::to_string(own) +
+                              " along one axis do not broadcast");
+      }
+      size = size == 1 ? own : size;
+    }
+  }
+  return py::vectorize(equation)(arrays...);
 }
 
 using Two = py::typing::Tuple<Array, Array>;

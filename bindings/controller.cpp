@@ -62,13 +62,13 @@ void bind_control(py::module_& m) {
   m.def(
       "over_dead_band",
       [](const Params& p, const Array& voltage) {
-        return py::vectorize([d = dead_band(p)](double v) { return sms::over_dead_band(d, v); })(voltage);
+        return each([d = dead_band(p)](double v) { return sms::over_dead_band(d, v); }, voltage);
       },
       py::arg("params"), py::arg("voltage"), "Dead-band compensation, V (eq. 7.5).");
   m.def(
       "dead_band_gain",
       [](const Params& p, const Array& voltage) {
-        return py::vectorize([d = dead_band(p)](double v) { return sms::dead_band_gain(d, v); })(voltage);
+        return each([d = dead_band(p)](double v) { return sms::dead_band_gain(d, v); }, voltage);
       },
       py::arg("params"), py::arg("voltage"), "Slope of the dead-band compensation (eq. 7.7).");
   m.def(
@@ -77,7 +77,7 @@ void bind_control(py::module_& m) {
         const auto one = [d = dead_band(p), offset = p.command_offset](double v) {
           return sms::valve_command(d, offset, v);
         };
-        return py::vectorize(one)(voltage);
+        return each(one, voltage);
       },
       py::arg("params"), py::arg("voltage"), "Command at the valve, V, from the controller's output, compensated.");
 }
@@ -112,7 +112,7 @@ void bind_signals(py::module_& m) {
       "chirp",
       [](const Array& time, double amplitude, double first, double last, double duration) {
         const sms::Chirp<double> c = {amplitude, first, last, duration};
-        return py::vectorize([&c](double t) { return sms::chirp(c, t); })(time);
+        return each([&c](double t) { return sms::chirp(c, t); }, time);
       },
       py::arg("time"), py::arg("amplitude"), py::arg("first"), py::arg("last"), py::arg("duration"),
       "The chirp of eq. 7.3, in the unit of the amplitude; frequencies in Hz, times in s.");
@@ -120,21 +120,21 @@ void bind_signals(py::module_& m) {
       "chirp_frequency",
       [](const Array& time, double first, double last, double duration) {
         const sms::Chirp<double> c = {1.0, first, last, duration};
-        return py::vectorize([&c](double t) { return sms::chirp_frequency(c, t); })(time);
+        return each([&c](double t) { return sms::chirp_frequency(c, t); }, time);
       },
       py::arg("time"), py::arg("first"), py::arg("last"), py::arg("duration"), "Its frequency, Hz.");
   m.def(
       "sampled_extension",
       [](const Params& p, const Array& extension) {
         const auto one = [&p, c = sms::position_converter(p)](double x) { return sms::sampled_extension(p, c, x); };
-        return py::vectorize(one)(extension);
+        return each(one, extension);
       },
       py::arg("params"), py::arg("extension"), "What the controller takes for the extension, m: potentiometer, ADC.");
   m.def(
       "pulse_width_voltage",
       [](const Params& p, const Array& command) {
         const auto one = [c = sms::command_converter(p)](double v) { return sms::pulse_width_voltage(c, v); };
-        return py::vectorize(one)(command);
+        return each(one, command);
       },
       py::arg("params"), py::arg("command"), "The mean voltage of the pulses for a command, V.");
   m.def("dac_filter", &dac_filter, py::arg("params"), py::arg("voltage"), py::arg("dt"),

@@ -1,13 +1,13 @@
 // Friction and force balance of one cylinder, over numpy arrays that broadcast.
 #include <limits>
 
-#include "bind.hpp"
+#include "broadcast.hpp"
 #include "sms/force_balance.hpp"
 
 namespace sms_python {
 namespace {
 
-using Samples = py::array_t<double, py::array::forcecast>;
+using Samples = py::array_t<double, kAnyOrder>;
 using Equation = double (*)(const Params&, const sms::Piston<double>&);
 
 void def_of_piston(py::module_& m, const char* name, Equation equation, const char* doc) {
@@ -19,7 +19,7 @@ void def_of_piston(py::module_& m, const char* name, Equation equation, const ch
           const sms::Piston<double> piston = {x, v, a, lower, upper};
           return sms::is_finite(piston) ? equation(params, piston) : std::numeric_limits<double>::quiet_NaN();
         };
-        return py::vectorize(one)(extension, velocity, acceleration, pressure_lower, pressure_upper);
+        return each(one, extension, velocity, acceleration, pressure_lower, pressure_upper);
       },
       py::arg("params"), py::arg("extension"), py::arg("velocity"), py::arg("acceleration"), py::arg("pressure_lower"),
       py::arg("pressure_upper"), doc);
@@ -36,7 +36,7 @@ void bind_cylinder(py::module_& m) {
         const auto one = [&params](double v) {
           return sms::is_finite(v) ? sms::friction_stribeck(params, v) : std::numeric_limits<double>::quiet_NaN();
         };
-        return py::vectorize(one)(velocity);
+        return each(one, velocity);
       },
       py::arg("params"), py::arg("velocity"), "The simple friction law, N (eq. 4.33).");
 }

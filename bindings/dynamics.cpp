@@ -1,6 +1,7 @@
 // Dynamics of the mechanism, a row at a time through the C ABI.
 #include <iterator>
 
+#include "choice.hpp"
 #include "rows.hpp"
 
 namespace sms_python {
@@ -11,9 +12,10 @@ const char* const mass_models[] = {"corrected", "table", "platform", "lumped"};
 
 sms_mechanism mechanism_of(const Params& params, int masses) {
   sms_mechanism mechanism;
-  const sms_status status = sms_mechanism_from_params(&params, sms_mass_model(masses), &mechanism);
+  const auto model = choice<sms_mass_model>("masses", masses, int(std::size(mass_models)));
+  const sms_status status = sms_mechanism_from_params(&params, model, &mechanism);
   if (status != SMS_OK) {
-    raise_status(status, "there is no mass model number " + std::to_string(masses));
+    raise_status(status, std::string("the mechanism of these parameters: ") + sms_status_string(status));
   }
   return mechanism;
 }

@@ -28,7 +28,7 @@ std::unique_ptr<est::BenchEquations> make_bench_equations(double step, Eigen::Ve
                                                           const Columns& pressure_upper, const Columns& supply_pressure,
                                                           const Conditions& conditions, const std::string& friction,
                                                           const std::string& valve, const std::string& chambers) {
-  return std::make_unique<est::BenchEquations>(est::BenchSignals{step,
+  return std::make_unique<est::BenchEquations>(est::BenchSignals{time_step("step", step),
                                                                  {std::move(command), signal_of(extension),
                                                                   signal_of(pressure_lower), signal_of(pressure_upper)},
                                                                  signal_of(supply_pressure),
@@ -41,7 +41,7 @@ std::unique_ptr<est::TankEquations> make_tank_equations(double step, Eigen::Vect
                                                         const Conditions& conditions, const std::string& valve,
                                                         const std::string& chambers) {
   return std::make_unique<est::TankEquations>(
-      est::TankSignals{step, std::move(command), signal_of(pressure), signal_of(temperature),
+      est::TankSignals{time_step("step", step), std::move(command), signal_of(pressure), signal_of(temperature),
                        signal_of(supply_pressure), conditions_of(conditions)},
       laws_of("acceleration_dependent", valve, chambers));
 }
@@ -52,7 +52,7 @@ std::unique_ptr<est::PlatformEquations> make_platform_equations(
     const Columns& supply_pressure, const Columns& roll, const Columns& pitch, const Conditions& conditions,
     const std::string& friction, const std::string& valve, const std::string& chambers, int masses) {
   est::PlatformSignals signals;
-  signals.step = step;
+  signals.step = time_step("step", step);
   for (std::size_t i = 0; i < 3; ++i) {
     signals.leg[i] = {command[i], signal_of(extension[i]), signal_of(pressure_lower[i]), signal_of(pressure_upper[i])};
   }
@@ -61,7 +61,7 @@ std::unique_ptr<est::PlatformEquations> make_platform_equations(
   signals.pitch = signal_of(pitch);
   signals.conditions = conditions_of(conditions);
   return std::make_unique<est::PlatformEquations>(std::move(signals), laws_of(friction, valve, chambers),
-                                                  static_cast<sms::MassModel>(masses));
+                                                  choice<sms::MassModel>("masses", masses, 4));
 }
 
 }  // namespace

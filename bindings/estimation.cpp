@@ -52,7 +52,7 @@ est::Fit fit(const est::Problem& problem, const Params& start, const std::vector
   options.max_iterations = max_iterations;
   options.tolerance = tolerance;
   options.huber = huber;
-  py::gil_scoped_release unlocked;
+  const Exclusive alone(&problem);
   return est::fit(problem, start, bounds, weight, options);
 }
 
@@ -64,7 +64,7 @@ std::pair<Eigen::VectorXd, est::RowMatrix> evaluate(const est::Problem& problem,
 // ---- spool ----
 
 est::SpoolRecord make_spool_record(double step, Eigen::VectorXd command, Eigen::VectorXd position) {
-  return {step, std::move(command), std::move(position)};
+  return {time_step("step", step), std::move(command), std::move(position)};
 }
 
 void bind_spool(py::module_& m) {

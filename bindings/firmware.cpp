@@ -6,6 +6,7 @@
 #include "application.hpp"
 #include "bind.hpp"
 #include "board_model.hpp"
+#include "choice.hpp"
 #include "sip_key.hpp"
 #include "sms_firmware.h"
 
@@ -34,15 +35,24 @@ py::bytes data_of(const sms::Frame& f) {
   return py::bytes(text);
 }
 
+template <typename Number>
+Number signal_of(const py::dict& values, const char* frame, const char* signal) {
+  if (!values.contains(signal)) {
+    throw py::key_error(std::string("the frame '") + frame + "' has a signal '" + signal + "', values has none");
+  }
+  return number_of<Number>(values[signal], signal);
+}
+
 // The codec by name, for the test that holds it against the DBC.
 py::bytes pack_frame(const std::string& name, const py::dict& values) {
 #define SMS_FRAME(frame_, identifier_) \
   if (name == #frame_) {               \
+    const char* const frame = #frame_; \
     sms::frame::frame_ s;
-#define SMS_RAW(signal, start, length) s.signal = values[#signal].cast<sms::Long>();
-#define SMS_UNSIGNED(signal, start, step, offset) s.signal = values[#signal].cast<float>();
-#define SMS_SIGNED(signal, start, step, offset) s.signal = values[#signal].cast<float>();
-#define SMS_REAL32(signal, start) s.signal = values[#signal].cast<float>();
+#define SMS_RAW(signal, start, length) s.signal = signal_of<sms::Long>(values, frame, #signal);
+#define SMS_UNSIGNED(signal, start, step, offset) s.signal = signal_of<float>(values, frame, #signal);
+#define SMS_SIGNED(signal, start, step, offset) s.signal = signal_of<float>(values, frame, #signal);
+#define SMS_REAL32(signal, start) s.signal = signal_of<float>(values, frame, #signal);
 #define SMS_FRAME_END(frame_)   \
   return data_of(sms::pack(s)); \
   }
@@ -125,7 +135,8 @@ class Controller {
       }
       *fw::parameter(p, index) = converted;
     }
-    const sms_status status = fw::reset_with(*app_, p, sms::ResetCause(reset_cause), sms::Word(seed & 0xFFFFu));
+    const auto cause = choice<sms::ResetCause>("reset_cause", reset_cause, 3);
+    const sms_status status = fw::reset_with(*app_, p, cause, sms::Word(seed & 0xFFFFu));
     if (status != SMS_OK) {
       raise_status(status, "a machine with these parameters has no level pose within its stroke");
     }
@@ -146,7 +157,7 @@ class Controller {
     in_.enabled = enabled ? 1 : 0;
     in_.bus_off = bus_off ? 1 : 0;
     in_.missed_ticks = sms::Word(missed_ticks);
-    in_.load = sms::Word(load > 1.275 ? 255 : 200.0 * load);
+    in_.load = sms::Word(load > 1.275 ? 255.0 : load > 0.0 ? 200.0 * load : 0.0);  // NaN: not measured
     in_.frame_count = sms::Word(frames.size());
     for (size_t i = 0; i < frames.size(); ++i) {
       in_.frames[i] = frame_of(frames[i].first, frames[i].second);
@@ -165,6 +176,12 @@ class Controller {
     if (extension.size() != SMS_LEGS || lower.size() != SMS_LEGS || upper.size() != SMS_LEGS) {
       throw py::value_error("extension, lower and upper have to hold one value for each of the three actuators");
     }
+    for (const std::vector<double>* const values : {&extension, &lower, &upper}) {
+      for (const double value : *values) {
+        need_finite(value, "extension, lower or upper");
+      }
+    }
+    need_finite(supply, "supply");
     const fw::Parameters& p = app_->parameters.active;
     std::vector<unsigned> counts;
     for (int i = 0; i < SMS_LEGS; ++i) counts.push_back(fw::counts_of_extension(p, i, extension[size_t(i)]));

@@ -6,9 +6,9 @@
 
 namespace sms_python {
 
-inline sms::FrictionLaw friction_law(const std::string& name) {
+inline sms::FrictionLaw friction_law(const std::string& name, const char* what = "law") {
   using sms::FrictionLaw;
-  return choice<FrictionLaw>("law", name,
+  return choice<FrictionLaw>(what, name,
                              {{"acceleration_dependent", FrictionLaw::acceleration_dependent},
                               {"two_branch", FrictionLaw::two_branch},
                               {"stribeck", FrictionLaw::stribeck},

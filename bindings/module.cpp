@@ -1,11 +1,36 @@
 #include "bind.hpp"
 
+namespace py = pybind11;
+
 // As the compiler sees it, not as a build script believes it to be.
 #ifdef __AVX2__
 constexpr bool kAvx2 = true;
 #else
 constexpr bool kAvx2 = false;
 #endif
+
+namespace {
+
+// pybind11 gives Params.__new__(Params) memory that no constructor has filled, and hands it to a method as it is. A
+// slot of its own in each class has Python refuse __new__ with a TypeError; a call of the class goes through the slot,
+// and then through the constructor.
+newfunc pybind11_new = nullptr;
+
+PyObject* new_before_constructor(PyTypeObject* type, PyObject* args, PyObject* kwargs) {
+  return pybind11_new(type, args, kwargs);
+}
+
+void only_by_constructors(const py::module_& m) {
+  for (const auto& member : m.attr("__dict__").cast<py::dict>()) {
+    if (py::isinstance(member.second, reinterpret_cast<PyObject*>(py::detail::get_internals().default_metaclass))) {
+      PyTypeObject* const type = reinterpret_cast<PyTypeObject*>(member.second.ptr());
+      pybind11_new = pybind11_new == nullptr ? type->tp_new : pybind11_new;
+      type->tp_new = &new_before_constructor;
+    }
+  }
+}
+
+}  // namespace
 
 PYBIND11_MODULE(_core, m) {
   m.doc() = "The C++ core of sms: parameters, equations, estimation. Use it through the package sms.";
@@ -34,4 +59,5 @@ PYBIND11_MODULE(_core, m) {
 #else
   m.attr("has_estimation") = false;
 #endif
+  only_by_constructors(m);
 }

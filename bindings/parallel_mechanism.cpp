@@ -1,4 +1,5 @@
 // Mechanisms given by data: kinematics, distance from singularity and dynamics, a row a pose. Header-only in libsms.
+#include "choice.hpp"
 #include "rows.hpp"
 #include "sms/parallel_dynamics.hpp"
 #include "sms/parallel_path.hpp"
@@ -7,7 +8,7 @@ namespace sms_python {
 namespace {
 
 using Six = sms::Vec6<double>;
-using Legs = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Legs = py::array_t<double, kInOrder>;
 
 // The mechanism with what is asked of it row after row.
 struct Parallel {
@@ -36,7 +37,7 @@ Parallel make_parallel(const Legs& base, const Legs& platform, const std::vector
     const bool in_plane = n[0] - n[0] >= 0.0;
     p.mechanism.leg[i] = {vector(base.data() + 3 * i),
                           vector(platform.data() + 3 * i),
-                          sms::LegLength(length_is[std::size_t(i)]),
+                          choice<sms::LegLength>("length_is", length_is[std::size_t(i)], 3),
                           fixed_length[std::size_t(i)],
                           in_plane,
                           in_plane ? sms::Vec3<double>(vector(n) / std::sqrt(vector(n).squaredNorm()))

@@ -2,18 +2,11 @@
 #include <pybind11/operators.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "bind.hpp"
 
 namespace sms_python {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
 
 void set_checked(Params& params, int index, double value) {
   const sms_param_info& info = *sms_param_describe(index);
@@ -130,7 +123,11 @@ void bind_params(py::module_& m) {
   params.def(py::init([](const py::kwargs& values) {
     Params p;
     for (const auto& item : values) {
-      set_checked(p, param_index(py::cast<std::string>(item.first)), py::cast<double>(item.second));
+      const char* const name = PyUnicode_AsUTF8(item.first.ptr());
+      if (name == nullptr) {  // no text: half a pair of surrogates
+        throw py::error_already_set();
+      }
+      set_checked(p, param_index(name), number_of<double>(item.second, name));
     }
     return p;
   }));

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "choice.hpp"
+#include "exclusive.hpp"
 #include "plant_rows.hpp"
 #include "rows.hpp"
 #include "sms/simulate.hpp"
@@ -78,11 +79,18 @@ template <typename Plant>
 class Simulation {
  public:
   using State = typename Plant::State;
+  static constexpr double kLeastTolerance = 1e-15;
   static constexpr py::ssize_t kStates = sms::StateVector<State>::size;
 
   Simulation(const Params& controller, const Plant& plant, const State& initial, const typename Plant::Input& input,
              const std::string& control, bool compensated, bool electronics, double tolerance, double step, bool stiff)
       : params_(controller), run_(plant), readings_(kStates + static_cast<py::ssize_t>(term_names(plant).size())) {
+    if (step > 0.0) {
+      time_step("step", step);
+    } else if (!(tolerance >= kLeastTolerance && tolerance <= 1.0)) {
+      throw py::value_error("tolerance = " + number(tolerance) + "; a relative error from " + number(kLeastTolerance) +
+                            " to 1 is needed");
+    }
     const sms_status status =
         begin_simulation(initial, input, params_, control_of(control), compensated, electronics, tolerance, run_);
     if (status != SMS_OK) {
@@ -105,7 +113,7 @@ class Simulation {
     sms_status status = SMS_OK;
     py::ssize_t done = 0;
     {
-      const py::gil_scoped_release no_python;
+      const Exclusive alone(this);
       for (; done < n; ++done) {
         status = renew_load(load.data() + done * load_width<Plant>());
         if (status != SMS_OK) {
@@ -238,7 +246,8 @@ std::unique_ptr<PlatformSimulation> make_platform_simulation(const std::array<Pa
                                                              bool electronics, const std::array<double, 3>& q,
                                                              double mean_pressure, double tolerance, double step,
                                                              bool stiff, const std::optional<Eigen::VectorXd>& state) {
-  auto platform = sms::make_platform(params[0], laws_of(valve, friction, chamber, electronics), MassModel(masses));
+  auto platform = sms::make_platform(params[0], laws_of(valve, friction, chamber, electronics),
+                                     choice<MassModel>("masses", masses, 4));
   sms::PlatformInput<double> input{sms::Vec3<double>::Zero(), {sms::Vec3<double>::Zero(), sms::Vec3<double>::Zero()}};
   for (int i = 0; i < 3; ++i) {
     platform.params[i] = params[std::size_t(i)];
@@ -269,7 +278,11 @@ void add_running(py::class_<Bound>& c) {
   c.def("advance", &Bound::advance, py::arg("setpoint"), py::arg("noise"), py::arg("load"),
         "(rows (n, columns), status, rows done) of n control periods; setpoint and noise (n, legs), load (n, 1 or 6).")
       .def(
-          "why", [](const Bound& bound, int status) { return bound.why(sms_status(status)); }, py::arg("status"),
+          "why",
+          [](const Bound& bound, int status) {
+            return bound.why(choice<sms_status>("status", status, SMS_WRONG_ABI + 1));
+          },
+          py::arg("status"),
           "What a status of advance() means for this plant, in words.")
       .def("record", &Bound::record, py::arg("rows"), py::arg("channels"), py::arg("draws"),
            "The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; "

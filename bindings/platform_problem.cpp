@@ -46,10 +46,11 @@ void bind_leg_params(py::module_& m) {
            })
       .def("__setitem__",
            [](LegParams& p, const std::string& name, double value) {
+             const int index = leg_param_index(name);
              if (!std::isfinite(value)) {
                raise_status(SMS_NOT_A_NUMBER, name + " is not a finite number");
              }
-             sms::param(p, leg_param_index(name)) = value;
+             sms::param(p, index) = value;
            })
       .def("copy", [](const LegParams& p) { return LegParams(p); })
       .def_property_readonly("legs", &legs_of, "What each leg has, as simulate_platform takes it.");
@@ -63,7 +64,7 @@ est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, co
                                 Eigen::VectorXd supply_pressure, Eigen::VectorXd roll, Eigen::VectorXd pitch,
                                 const std::map<std::string, double>& conditions, const Eigen::MatrixX3d& setpoint,
                                 const std::string& hold) {
-  return {step,
+  return {time_step("step", step),
           columns(command),
           columns(extension),
           columns(pressure_lower),
@@ -77,15 +78,15 @@ est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, co
 }
 
 Eigen::Vector3d of_legs(const Noise& noise, const std::string& signal) {
-  return {noise.at(signal + "_1"), noise.at(signal + "_2"), noise.at(signal + "_3")};
+  return {noise_of(noise, signal + "_1"), noise_of(noise, signal + "_2"), noise_of(noise, signal + "_3")};
 }
 
 est::PlatformNoise platform_noise(const Noise& noise) {
   return {of_legs(noise, "extension"),
           of_legs(noise, "chamber_pressure_lower"),
           of_legs(noise, "chamber_pressure_upper"),
-          noise.at("supply_pressure"),
-          {noise.at("roll"), noise.at("pitch")}};
+          noise_of(noise, "supply_pressure"),
+          {noise_of(noise, "roll"), noise_of(noise, "pitch")}};
 }
 
 std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> records, const Noise& noise,
@@ -93,9 +94,10 @@ std::unique_ptr<PlatformProblem> make_problem(std::vector<est::PlatformRecord> r
                                               const std::string& chambers, int masses, double window,
                                               double longest_step, const std::optional<double>& elsewhere,
                                               int threads) {
+  need_commands(records, [](const est::PlatformRecord& record) -> const Eigen::VectorXd& { return record.command[0]; });
   return std::make_unique<PlatformProblem>(
       est::PlatformPlant(std::move(records), platform_noise(noise), laws_of(friction, valve, chambers),
-                         static_cast<sms::MassModel>(masses), {longest_step, elsewhere.value_or(longest_step)}),
+                         choice<sms::MassModel>("masses", masses, 4), longest_steps(longest_step, elsewhere)),
       options_of(window, threads));
 }
 
@@ -108,8 +110,8 @@ std::unique_ptr<PlatformLoopProblem> make_loop_problem(std::vector<est::Platform
   laws.drive = electronics ? sms::DriveLaw::filtered : sms::DriveLaw::direct;
   return std::make_unique<PlatformLoopProblem>(
       est::PlatformLoopPlant(std::move(records), platform_noise(noise), of_legs(noise, "valve_command"), laws,
-                             control_law(law, compensated, electronics), said, static_cast<sms::MassModel>(masses),
-                             longest_step),
+                             control_law(law, compensated, electronics), said,
+                             choice<sms::MassModel>("masses", masses, 4), time_step("longest_step", longest_step)),
       options_of(window, threads));
 }
 

@@ -86,7 +86,7 @@ void bind_valve(py::module_& m) {
     m.def(
         name,
         [equation](const Params& p, const Array& x) {
-          return py::vectorize([&p, equation](double value) { return equation(p, value); })(x);
+          return each([&p, equation](double value) { return equation(p, value); }, x);
         },
         py::arg("params"), py::arg(argument), doc);
   };
@@ -100,7 +100,7 @@ void bind_valve(py::module_& m) {
         const auto one = [&p](double a, double p1, double p2, double T) {
           return sms::classic_mass_flow(p, a, {p1, T}, {p2, T});
         };
-        return py::vectorize(one)(area, from, to, temperature);
+        return each(one, area, from, to, temperature);
       },
       py::arg("params"), py::arg("area"), py::arg("pressure_from"), py::arg("pressure_to"), py::arg("temperature"),
       "Mass flow through an orifice, kg/s (eq. 4.20 to 4.22); area m^2, pressures Pa absolute, temperature K.");
@@ -111,7 +111,7 @@ void bind_valve(py::module_& m) {
         const auto one = [&p](double c, double r, double i, double p1, double p2, double T) {
           return sms::iso_mass_flow(p, {c, r, i}, {p1, T}, {p2, T});
         };
-        return py::vectorize(one)(C, b, index, from, to, temperature);
+        return each(one, C, b, index, from, to, temperature);
       },
       py::arg("params"), py::arg("sonic_conductance"), py::arg("critical_ratio"), py::arg("subsonic_index"),
       py::arg("pressure_from"), py::arg("pressure_to"), py::arg("temperature"),
@@ -143,7 +143,7 @@ void bind_chamber(py::module_& m) {
       "chamber_volume",
       [](const Params& p, const std::string& chamber_name, const Array& extension) {
         const Chamber chamber = chamber_of(chamber_name);
-        return py::vectorize([&p, chamber](double x) { return space(p, chamber, x, 0.0).volume; })(extension);
+        return each([&p, chamber](double x) { return space(p, chamber, x, 0.0).volume; }, extension);
       },
       py::arg("params"), py::arg("chamber"), py::arg("extension"), "Volume, m^3 (eq. 4.31), tube included.");
   m.def(
@@ -155,7 +155,7 @@ void bind_chamber(py::module_& m) {
           return sms::polytropic_pressure_rate(p, sms::polytropic_ratios(p), at(p, gas), space(p, chamber, x, v),
                                                {in, in * p.air_temperature, out});
         };
-        return py::vectorize(one)(pressure, extension, velocity, inflow, outflow);
+        return each(one, pressure, extension, velocity, inflow, outflow);
       },
       py::arg("params"), py::arg("chamber"), py::arg("pressure"), py::arg("extension"), py::arg("velocity"),
       py::arg("inflow"), py::arg("outflow"), "Rate of pressure, Pa/s (eq. 4.30, 4.32); flows in kg/s.");
@@ -182,7 +182,7 @@ void bind_chamber(py::module_& m) {
       "tube_transmission",
       [](const Params& p, const Array& mass_flow, const Array& pressure) {
         const auto one = [&p](double flow, double gas) { return sms::tube_transmission(p, flow, gas); };
-        return py::vectorize(one)(mass_flow, pressure);
+        return each(one, mass_flow, pressure);
       },
       py::arg("params"), py::arg("mass_flow"), py::arg("pressure"), "Part of a mass flow that the tube lets through.");
 }
@@ -196,7 +196,7 @@ void bind_vessels(py::module_& m) {
         const auto one = [&p](double c, double r, double i, double inner, double outer) {
           return sms::tank_pressure_rate(p, {c, r, i}, at(p, inner), at(p, outer));
         };
-        return py::vectorize(one)(C, b, index, tank, outside);
+        return each(one, C, b, index, tank, outside);
       },
       py::arg("params"), py::arg("sonic_conductance"), py::arg("critical_ratio"), py::arg("subsonic_index"),
       py::arg("pressure"), py::arg("pressure_outside"), "Rate of pressure in the tank, Pa/s (eq. 5.5 with 5.8).");
@@ -204,14 +204,14 @@ void bind_vessels(py::module_& m) {
       "reservoir_pressure_rate",
       [](const Params& p, const Array& pressure, const Array& drawn) {
         const auto one = [&p](double gas, double flow) { return sms::reservoir_pressure_rate(p, gas, flow); };
-        return py::vectorize(one)(pressure, drawn);
+        return each(one, pressure, drawn);
       },
       py::arg("params"), py::arg("pressure"), py::arg("drawn"), "Rate of pressure in the reservoir, Pa/s; drawn kg/s.");
   m.def(
       "thermocouple_temperature",
       [](const Params& p, const Array& voltage, const Array& cold_junction) {
         const auto one = [&p](double v, double T) { return sms::thermocouple_temperature(p, v, T); };
-        return py::vectorize(one)(voltage, cold_junction);
+        return each(one, voltage, cold_junction);
       },
       py::arg("params"), py::arg("voltage"), py::arg("cold_junction"),
       "Temperature, K (eq. 5.11, 5.12), from the amplified voltage and the cold junction's temperature, K.");

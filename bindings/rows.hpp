@@ -15,14 +15,15 @@
 namespace sms_python {
 
 // n rows of so many numbers, as they lie in memory in C.
-using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Rows = py::array_t<double, kInOrder>;
 // One number a row, as far apart in memory as numpy keeps them.
-using Column = py::array_t<double, py::array::forcecast>;
+using Column = py::array_t<double, kAnyOrder>;
 using Status = py::array_t<int>;
 
 inline py::ssize_t row_count(const Rows& rows, py::ssize_t width) {
   if (rows.ndim() != 2 || rows.shape(1) != width) {
-    throw py::value_error("an array of shape (n, " + std::to_string(width) + ") is needed");
+    throw py::value_error("an array of shape (n, " + std::to_string(width) + ") is needed, not " +
+                          py::str(rows.attr("shape")).cast<std::string>());
   }
   return rows.shape(0);
 }

@@ -21,7 +21,7 @@ est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::
                                    Eigen::VectorXd pressure_lower, Eigen::VectorXd pressure_upper,
                                    Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions,
                                    Eigen::VectorXd setpoint, const std::string& hold) {
-  return {step,
+  return {time_step("step", step),
           std::move(command),
           std::move(extension),
           std::move(pressure_lower),
@@ -33,17 +33,18 @@ est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::
 }
 
 est::BenchNoise bench_noise(const Noise& noise) {
-  return {noise.at("extension"), noise.at("chamber_pressure_lower"), noise.at("chamber_pressure_upper"),
-          noise.at("supply_pressure")};
+  return {noise_of(noise, "extension"), noise_of(noise, "chamber_pressure_lower"),
+          noise_of(noise, "chamber_pressure_upper"), noise_of(noise, "supply_pressure")};
 }
 
 std::unique_ptr<BenchProblem> make_bench_problem(std::vector<est::BenchRecord> records, const Noise& noise,
                                                  const std::string& friction, const std::string& valve,
                                                  const std::string& chambers, double window, double longest_step,
                                                  const std::optional<double>& elsewhere, int threads) {
+  need_commands(records, [](const est::BenchRecord& record) -> const Eigen::VectorXd& { return record.command; });
   return std::make_unique<BenchProblem>(
       est::BenchPlant(std::move(records), bench_noise(noise), laws_of(friction, valve, chambers),
-                      {longest_step, elsewhere.value_or(longest_step)}),
+                      longest_steps(longest_step, elsewhere)),
       options_of(window, threads));
 }
 
@@ -55,8 +56,8 @@ std::unique_ptr<BenchLoopProblem> make_bench_loop_problem(std::vector<est::Bench
   sms::ActuatorLaws laws = laws_of(friction, valve, chambers);
   laws.drive = electronics ? sms::DriveLaw::filtered : sms::DriveLaw::direct;
   return std::make_unique<BenchLoopProblem>(
-      est::BenchLoopPlant(std::move(records), bench_noise(noise), noise.at("valve_command"), laws,
-                          control_law(law, compensated, electronics), said, longest_step),
+      est::BenchLoopPlant(std::move(records), bench_noise(noise), noise_of(noise, "valve_command"), laws,
+                          control_law(law, compensated, electronics), said, time_step("longest_step", longest_step)),
       options_of(window, threads));
 }
 
@@ -64,7 +65,7 @@ est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eige
                                       Eigen::VectorXd temperature, Eigen::VectorXd supply_pressure,
                                       const std::map<std::string, double>& conditions, const std::string& hold,
                                       const std::string& valve) {
-  return {step,
+  return {time_step("step", step),
           std::move(command),
           std::move(pressure),
           std::move(temperature),
@@ -78,10 +79,11 @@ std::unique_ptr<TankPlantProblem> make_tank_plant_problem(std::vector<est::TankP
                                                           const std::string& chambers, double window,
                                                           double longest_step, const std::optional<double>& elsewhere,
                                                           int threads) {
-  const est::TankNoise sizes{noise.at("tank_pressure"), noise.at("tank_temperature"), noise.at("supply_pressure")};
+  const est::TankNoise sizes{noise_of(noise, "tank_pressure"), noise_of(noise, "tank_temperature"),
+                             noise_of(noise, "supply_pressure")};
   return std::make_unique<TankPlantProblem>(
       est::TankPlant(std::move(records), sizes, laws_of("acceleration_dependent", "iso_0_4_mpa", chambers),
-                     {longest_step, elsewhere.value_or(longest_step)}),
+                     longest_steps(longest_step, elsewhere)),
       options_of(window, threads));
 }
 
@@ -91,7 +93,12 @@ void bind_state(py::class_<Problem, est::Problem>& problem) {
   problem.def(
       "state",
       [](const Problem& p, const Params& params, std::size_t window) {
-        return p.plant().state(params, p.windows().at(window), p.found(window));
+        if (window >= p.windows().size()) {
+          throw py::index_error("window " + std::to_string(window) + " of " + std::to_string(p.windows().size()) +
+                                ", which count from 0");
+        }
+        const Exclusive alone(&p);
+        return p.plant().state(params, p.windows()[window], p.found(window));
       },
       py::arg("params"), py::arg("window"),
       "State of the plant where a window begins, at the initial state found last; simulate_bench and simulate_tank go "

@@ -4,6 +4,7 @@
 #include <pybind11/eigen.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,18 +13,42 @@
 #include "choice.hpp"
 #include "estimation/actuator_controller.hpp"
 #include "estimation/leg_params.hpp"
+#include "estimation/sample_steps.hpp"
 #include "estimation/shooting.hpp"
+#include "exclusive.hpp"
 #include "laws.hpp"
 #include "sms/actuator.hpp"
 
 namespace sms_python {
 
+// Standard deviation of a sample of a signal.
+inline double noise_of(const std::map<std::string, double>& noise, const std::string& signal) {
+  const auto found = noise.find(signal);
+  if (found == noise.end()) {
+    throw py::key_error("noise has no standard deviation of '" + signal + "'");
+  }
+  if (!(found->second > 0.0)) {
+    throw py::value_error("noise of " + signal + " is " + number(found->second) +
+                          "; a standard deviation is above zero");
+  }
+  return found->second;
+}
+
 // window: length, s
 inline sms::estimation::WindowOptions options_of(double window, int threads) {
+  if (threads < 1) {
+    throw py::value_error("threads = " + std::to_string(threads) + "; at least one is needed");
+  }
   sms::estimation::WindowOptions options;
   options.length = window;
   options.threads = threads;
   return options;
+}
+
+// Of the integration, s, and where the record says that nothing asks for short ones; none: the same.
+inline sms::estimation::LongestSteps longest_steps(double everywhere, const std::optional<double>& elsewhere) {
+  return {time_step("longest_step", everywhere),
+          time_step("longest_step_elsewhere", elsewhere.value_or(everywhere))};
 }
 
 // (ParamIndex, by how much it is larger) from names.
@@ -44,7 +69,7 @@ inline sms::ValveLaw valve_law_of(const std::string& valve) {
 
 inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string& valve, const std::string& chambers) {
   using sms::ChamberLaw;
-  return {valve_law_of(valve), friction_law(friction),
+  return {valve_law_of(valve), friction_law(friction, "friction"),
           choice<ChamberLaw>("chambers", chambers,
                              {{"polytropic", ChamberLaw::polytropic}, {"energy", ChamberLaw::energy}}),
           sms::DriveLaw::direct};
@@ -62,6 +87,17 @@ inline sms::estimation::ControlLaw control_law(const std::string& law, bool comp
           compensated, electronics};
 }
 
+// A record may lack its command, for a problem that simulates the controller; for others ValueError.
+template <typename Record, typename Command>
+void need_commands(const std::vector<Record>& records, const Command& command_of) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (command_of(records[i]).size() == 0) {
+      throw py::value_error("record " + std::to_string(i) + " has no command, which a problem without a simulated "
+                            "controller needs");
+    }
+  }
+}
+
 // Residual and Jacobian against parameters by name; `index` gives the ParamIndex of one.
 template <typename Machine>
 std::pair<Eigen::VectorXd, sms::estimation::RowMatrix> evaluate_by_name(
@@ -73,12 +109,18 @@ std::pair<Eigen::VectorXd, sms::estimation::RowMatrix> evaluate_by_name(
   }
   Eigen::VectorXd residual;
   sms::estimation::RowMatrix jacobian;
-  py::gil_scoped_release unlocked;
+  const Exclusive alone(&problem);
   problem.evaluate(params, free, &residual, free.empty() ? nullptr : &jacobian);
   if (free.empty()) {
     jacobian.resize(problem.rows(), 0);
   }
   return {residual, jacobian};
+}
+
+template <typename Problem>
+std::vector<sms::estimation::Window> windows_of(const Problem& problem) {
+  const Exclusive alone(&problem);
+  return problem.windows();
 }
 
 // Base: what Python knows it derives from, if anything.
@@ -87,12 +129,38 @@ auto bind_shooting_problem(py::module_& m, const char* name) {
   using Problem = sms::estimation::ShootingProblem<Plant>;
   py::class_<Problem, Base...> problem(
       m, name, "Prediction errors over windows, in units of the noise: for each sample of a window, each output.");
-  problem.def_property_readonly("windows", &Problem::windows)
-      .def("settle", &Problem::settle, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
+  problem.def_property_readonly("windows", &windows_of<Problem>)
+      .def(
+          "settle",
+          [](Problem& p, const typename Problem::template Machine<double>& params) {
+            const Exclusive alone(&p);
+            p.settle(params);
+          },
+          py::arg("params"),
            "Let later searches for initial states begin at the best ones of these parameters.")
-      .def("errors", &Problem::errors, py::arg("params"), py::call_guard<py::gil_scoped_release>(),
+      .def(
+          "errors",
+          [](const Problem& p, const typename Problem::template Machine<double>& params) {
+            const Exclusive alone(&p);
+            return p.errors(params);
+          },
+          py::arg("params"),
            "(rows,): predicted less measured over the noise, at the best initial states.")
-      .def("hidden", &Problem::hidden, py::arg("params"), py::arg("knots"), py::call_guard<py::gil_scoped_release>(),
+      .def(
+          "hidden",
+          [](const Problem& p, const typename Problem::template Machine<double>& params, int knots) {
+            int most = 2;
+            for (const sms::estimation::Window& window : windows_of(p)) {
+              most = std::max(most, window.samples);
+            }
+            if (knots < 2 || knots > most) {
+              throw py::value_error("knots = " + std::to_string(knots) + "; from 2 to " + std::to_string(most) +
+                                    ", as many as a window has samples, are possible");
+            }
+            const Exclusive alone(&p);
+            return p.hidden(params, knots);
+          },
+          py::arg("params"), py::arg("knots"),
            "(rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.");
   return problem;
 }

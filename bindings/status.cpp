@@ -1,5 +1,5 @@
 // One Python exception per status of the C ABI, all of them ValueErrors.
-#include "bind.hpp"
+#include "choice.hpp"
 
 namespace sms_python {
 namespace {
@@ -17,6 +17,8 @@ StatusException exceptions[] = {
     {SMS_NOT_CONVERGED, "NotConvergedError", nullptr},
 };
 
+constexpr int kStatuses = SMS_WRONG_ABI + 1;
+
 }  // namespace
 
 void bind_status(py::module_& m) {
@@ -31,17 +33,20 @@ void bind_status(py::module_& m) {
   }
   m.def(
       "raise_status",
-      [](int status, const std::string& message) -> py::typing::Never { raise_status(sms_status(status), message); },
+      [](int status, const std::string& message) -> py::typing::Never {
+        raise_status(choice<sms_status>("status", status, kStatuses), message);
+      },
       py::arg("status"), py::arg("message"), "Raises the exception of a status other than 0.");
   m.def(
-      "status_string", [](int status) { return sms_status_string(sms_status(status)); }, py::arg("status"),
+      "status_string",
+      [](int status) { return sms_status_string(choice<sms_status>("status", status, kStatuses)); }, py::arg("status"),
       "What a status means, in a few words.");
 }
 
 void raise_status(sms_status status, const std::string& message) {
   for (const StatusException& e : exceptions) {
     if (e.status == status) {
-      PyErr_SetString(e.type, message.c_str());
+      PyErr_SetObject(e.type, py::str(message).ptr());  // all of it: PyErr_SetString ends at a zero
       throw py::error_already_set();
     }
   }

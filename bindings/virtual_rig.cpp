@@ -32,8 +32,10 @@ class VirtualRig {
   VirtualRig(const std::array<Params, 3>& params, double height, double mean_pressure, double step,
              double position_noise, double pressure_noise, unsigned seed, const py::bytes& key, std::uint64_t nonce)
       : rig_(platform(params), {position_noise, pressure_noise}, seed) {
+    need_finite(position_noise, "position_noise");
+    need_finite(pressure_noise, "pressure_noise");
     rig_.set_key(sip_key(key), nonce);
-    const sms_status status = rig_.begin(height, mean_pressure, step);
+    const sms_status status = rig_.begin(height, mean_pressure, time_step("step", step));
     if (status != SMS_OK) {
       raise_status(status, "the virtual rig cannot begin: " + std::string(sms_status_string(status)));
     }
@@ -52,8 +54,15 @@ class VirtualRig {
 
   // Frames of so many periods: (time, identifier, data), time at the end of the period that sent it, s.
   py::list step(int periods) {
+    if (periods < 0 || periods > kMostPeriods) {
+      throw py::value_error("periods = " + std::to_string(periods) + "; from 0 to " + std::to_string(kMostPeriods) +
+                            " are run in one call");
+    }
     py::list frames;
     for (int i = 0; i < periods; ++i) {
+      if (PyErr_CheckSignals() != 0) {  // Ctrl-C
+        throw py::error_already_set();
+      }
       const sms_status status = rig_.step();
       if (status != SMS_OK) {
         raise_status(status, "the simulated plant stops after " + std::to_string(rig_.time()) +
@@ -104,6 +113,8 @@ class VirtualRig {
   }
 
  private:
+  static constexpr int kMostPeriods = 60000;
+
   static sms::Platform<double> platform(const std::array<Params, 3>& params) {
     sms::ActuatorLaws laws = sms::published_laws();
     laws.drive = sms::DriveLaw::filtered;

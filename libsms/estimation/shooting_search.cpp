@@ -1,7 +1,8 @@
 #include "estimation/shooting_search.hpp"
 
+#include <algorithm>
 #include <atomic>
-#include <thread>
+#include <future>
 
 namespace sms {
 namespace estimation {
@@ -13,13 +14,13 @@ void in_parallel(int threads, std::size_t windows, const std::function<void(std:
       work(k);
     }
   };
-  std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) {
-    others.emplace_back(run);
+  std::vector<std::future<void>> others;  // each hands on what its windows threw, and is waited for in any case
+  for (std::size_t i = 1; i < std::min(static_cast<std::size_t>(threads), windows); ++i) {
+    others.push_back(std::async(std::launch::async, run));
   }
   run();
-  for (std::thread& thread : others) {
-    thread.join();
+  for (std::future<void>& other : others) {
+    other.get();
   }
 }
 
