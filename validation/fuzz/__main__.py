@@ -1,4 +1,4 @@
-"""`python -m validation.fuzz`: spoilt inputs for every command, counted."""
+"""`python -m validation.fuzz`: spoilt inputs for every command, spoilt arguments for the compiled module; counted."""
 
 from __future__ import annotations
 
@@ -14,11 +14,13 @@ import typer
 app = typer.Typer(add_completion=False)
 
 
-@app.command(
+@app.callback(
+    invoke_without_command=True,
     epilog="Example: **python -m validation.fuzz --count 2000 --keep failed**; "
-    "**--seed 7 --first 42 --count 1 --keep failed** repeats one case."
+    "**--seed 7 --first 42 --count 1 --keep failed** repeats one case.",
 )
 def fuzz(
+    context: typer.Context,
     count: Annotated[int, typer.Option(help="Cases to run.", min=1)] = 1000,
     seed: Annotated[int | None, typer.Option(help="Of the cases; drawn and printed.")] = None,
     first: Annotated[int, typer.Option(help="Number of the first case.", min=0)] = 0,
@@ -30,6 +32,8 @@ def fuzz(
 
     A failure is printed with its seed and number. Exit code 1 if there is any.
     """
+    if context.invoked_subcommand is not None:
+        return
     for name in (
         "OPENBLAS_NUM_THREADS",
         "SMS_THREADS",
@@ -52,6 +56,46 @@ def fuzz(
             print(_words(counts), flush=True)
     print(f"seed {seed}: {_words(counts)}")
     sys.exit(any(name not in GOOD for name in counts))
+
+
+@app.command(
+    epilog="Example: **python -m validation.fuzz bindings --count 20000**; "
+    "**bindings --seed 7 --first 42 --count 1 --verbose** repeats one case."
+)
+def bindings(
+    count: Annotated[int, typer.Option(help="Calls to make.", min=1)] = 2000,
+    seed: Annotated[int | None, typer.Option(help="Of the calls; drawn and printed.")] = None,
+    first: Annotated[int, typer.Option(help="Number of the first call.", min=0)] = 0,
+    only: Annotated[str, typer.Option(help="Only functions that hold these words.")] = "",
+    module: Annotated[
+        Path | None, typer.Option(help="File of the module, e.g. one with sanitizers.")
+    ] = None,
+    verbose: Annotated[bool, typer.Option("--verbose", help="A line a call.")] = False,
+) -> None:
+    """Call all that sms._core offers with spoilt arguments: each gives a value, or an exception that says something.
+
+    A failure is printed with its seed and number. Exit code 1 if there is any.
+    """
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before numpy is loaded
+    from validation.fuzz.bindings import Tallies, load_core, run  # noqa: PLC0415
+    from validation.fuzz.signatures import functions_of  # noqa: PLC0415
+
+    core = load_core(module)
+    seed = secrets.randbits(32) if seed is None else seed
+    print(f"seed {seed}; {core.build_info}", flush=True)
+    tallies = Tallies(functions_of(core))
+    for one in run(core, seed, range(first, first + count), only):
+        tallies.count(one)
+        if verbose or one.failed:
+            print(f"{seed}-{one.number}: {one.verdict}: {one.call}")
+            print("\n".join(f"    {line}" for line in one.said.splitlines()[:60]), flush=True)
+        if tallies.cases % 1000 == 0:
+            print(tallies.line(), flush=True)
+    print(tallies.table())
+    print(f"seed {seed}: {tallies.line()}")
+    if never := tallies.never_answered():
+        print(f"never answered, so not tested: {', '.join(never)}")
+    sys.exit(tallies.failures > 0)
 
 
 def _words(counts: Counter[str]) -> str:
