@@ -736,7 +736,7 @@ class Params:
     @property
     def flow_map_feed_lower_1(self) -> float:
         """
-        relative error of the tables' flow into the lower chamber at an opening of 0.6 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the lower chamber at an opening of 0.6 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_lower_1.setter
     def flow_map_feed_lower_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -744,7 +744,7 @@ class Params:
     @property
     def flow_map_feed_lower_2(self) -> float:
         """
-        relative error of the tables' flow into the lower chamber at an opening of 0.75 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the lower chamber at an opening of 0.75 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_lower_2.setter
     def flow_map_feed_lower_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -752,7 +752,7 @@ class Params:
     @property
     def flow_map_feed_lower_3(self) -> float:
         """
-        relative error of the tables' flow into the lower chamber at an opening of 0.95 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the lower chamber at an opening of 0.95 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_lower_3.setter
     def flow_map_feed_lower_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -760,7 +760,7 @@ class Params:
     @property
     def flow_map_feed_lower_4(self) -> float:
         """
-        relative error of the tables' flow into the lower chamber at an opening of 1.25 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the lower chamber at an opening of 1.25 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_lower_4.setter
     def flow_map_feed_lower_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -768,7 +768,7 @@ class Params:
     @property
     def flow_map_feed_lower_5(self) -> float:
         """
-        relative error of the tables' flow into the lower chamber at an opening of 1.8 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the lower chamber at an opening of 1.8 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_lower_5.setter
     def flow_map_feed_lower_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -776,7 +776,7 @@ class Params:
     @property
     def flow_map_feed_lower_6(self) -> float:
         """
-        relative error of the tables' flow into the lower chamber at an opening of 3.0 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the lower chamber at an opening of 3.0 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_lower_6.setter
     def flow_map_feed_lower_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -784,7 +784,7 @@ class Params:
     @property
     def flow_map_feed_upper_1(self) -> float:
         """
-        relative error of the tables' flow into the upper chamber at an opening of 0.6 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the upper chamber at an opening of 0.6 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_upper_1.setter
     def flow_map_feed_upper_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -792,7 +792,7 @@ class Params:
     @property
     def flow_map_feed_upper_2(self) -> float:
         """
-        relative error of the tables' flow into the upper chamber at an opening of 0.75 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the upper chamber at an opening of 0.75 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_upper_2.setter
     def flow_map_feed_upper_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -800,7 +800,7 @@ class Params:
     @property
     def flow_map_feed_upper_3(self) -> float:
         """
-        relative error of the tables' flow into the upper chamber at an opening of 0.95 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the upper chamber at an opening of 0.95 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_upper_3.setter
     def flow_map_feed_upper_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -808,7 +808,7 @@ class Params:
     @property
     def flow_map_feed_upper_4(self) -> float:
         """
-        relative error of the tables' flow into the upper chamber at an opening of 1.25 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the upper chamber at an opening of 1.25 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_upper_4.setter
     def flow_map_feed_upper_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -816,7 +816,7 @@ class Params:
     @property
     def flow_map_feed_upper_5(self) -> float:
         """
-        relative error of the tables' flow into the upper chamber at an opening of 1.8 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the upper chamber at an opening of 1.8 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_upper_5.setter
     def flow_map_feed_upper_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -824,7 +824,7 @@ class Params:
     @property
     def flow_map_feed_upper_6(self) -> float:
         """
-        relative error of the tables' flow into the upper chamber at an opening of 3.0 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow into the upper chamber at an opening of 3.0 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_feed_upper_6.setter
     def flow_map_feed_upper_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -832,7 +832,7 @@ class Params:
     @property
     def flow_map_vent_lower_1(self) -> float:
         """
-        relative error of the tables' flow out of the lower chamber at an opening of 0.6 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the lower chamber at an opening of 0.6 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_lower_1.setter
     def flow_map_vent_lower_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -840,7 +840,7 @@ class Params:
     @property
     def flow_map_vent_lower_2(self) -> float:
         """
-        relative error of the tables' flow out of the lower chamber at an opening of 0.75 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the lower chamber at an opening of 0.75 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_lower_2.setter
     def flow_map_vent_lower_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -848,7 +848,7 @@ class Params:
     @property
     def flow_map_vent_lower_3(self) -> float:
         """
-        relative error of the tables' flow out of the lower chamber at an opening of 0.95 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the lower chamber at an opening of 0.95 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_lower_3.setter
     def flow_map_vent_lower_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -856,7 +856,7 @@ class Params:
     @property
     def flow_map_vent_lower_4(self) -> float:
         """
-        relative error of the tables' flow out of the lower chamber at an opening of 1.25 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the lower chamber at an opening of 1.25 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_lower_4.setter
     def flow_map_vent_lower_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -864,7 +864,7 @@ class Params:
     @property
     def flow_map_vent_lower_5(self) -> float:
         """
-        relative error of the tables' flow out of the lower chamber at an opening of 1.8 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the lower chamber at an opening of 1.8 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_lower_5.setter
     def flow_map_vent_lower_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -872,7 +872,7 @@ class Params:
     @property
     def flow_map_vent_lower_6(self) -> float:
         """
-        relative error of the tables' flow out of the lower chamber at an opening of 3.0 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the lower chamber at an opening of 3.0 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_lower_6.setter
     def flow_map_vent_lower_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -880,7 +880,7 @@ class Params:
     @property
     def flow_map_vent_upper_1(self) -> float:
         """
-        relative error of the tables' flow out of the upper chamber at an opening of 0.6 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the upper chamber at an opening of 0.6 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_upper_1.setter
     def flow_map_vent_upper_1(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -888,7 +888,7 @@ class Params:
     @property
     def flow_map_vent_upper_2(self) -> float:
         """
-        relative error of the tables' flow out of the upper chamber at an opening of 0.75 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the upper chamber at an opening of 0.75 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_upper_2.setter
     def flow_map_vent_upper_2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -896,7 +896,7 @@ class Params:
     @property
     def flow_map_vent_upper_3(self) -> float:
         """
-        relative error of the tables' flow out of the upper chamber at an opening of 0.95 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the upper chamber at an opening of 0.95 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_upper_3.setter
     def flow_map_vent_upper_3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -904,7 +904,7 @@ class Params:
     @property
     def flow_map_vent_upper_4(self) -> float:
         """
-        relative error of the tables' flow out of the upper chamber at an opening of 1.25 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the upper chamber at an opening of 1.25 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_upper_4.setter
     def flow_map_vent_upper_4(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -912,7 +912,7 @@ class Params:
     @property
     def flow_map_vent_upper_5(self) -> float:
         """
-        relative error of the tables' flow out of the upper chamber at an opening of 1.8 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the upper chamber at an opening of 1.8 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_upper_5.setter
     def flow_map_vent_upper_5(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -920,7 +920,7 @@ class Params:
     @property
     def flow_map_vent_upper_6(self) -> float:
         """
-        relative error of the tables' flow out of the upper chamber at an opening of 3.0 V [1]; spread of Tables 5.1 and 5.2
+        relative error of the tables' flow out of the upper chamber at an opening of 3.0 V [1]; derived: spread of Tables 5.1 and 5.2
         """
     @flow_map_vent_upper_6.setter
     def flow_map_vent_upper_6(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
