@@ -6,9 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from plant_support import fitted_baseline
 from sms import Params, _core, simulate_tank
 from sms.diagnosis import diagnose
+from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.preparation import make_data
+from sms.diagnosis.selection.stepwise import try_effects
 from sms.io import write_record
 from sms.io.records import load_record
 from sms.io.rig import load_rig
@@ -96,6 +99,24 @@ def test_a_larger_tank_and_a_smaller_flow_are_one_class(tmp_path: Path) -> None:
     assert answer.next_experiment is not None
     assert {"dead_volume tank", "flow_conductance"} <= set(answer.next_experiment.separates)
     assert "standard errors" in answer.next_experiment.purpose
+
+
+@pytest.mark.parametrize(
+    "truth",
+    [{"dead_band_change": 0.05}, {"tank_inflow_heat_change": 0.1}, {"exhaust_flow_change": -0.1}],
+)
+def test_effects_that_are_one_equation_are_fitted_together(
+    tmp_path: Path, truth: dict[str, float]
+) -> None:
+    """Whichever leads: a tank's volume and all its flow are told apart by what is declared of them alone."""
+    rig = write_tank(tmp_path, 3, truth | {"tank_initial_pressure": 2e5})
+    baseline, data = fitted_baseline(rig)
+    pair = ("flow_conductance", "dead_volume")
+    effects = [e for e in effects_of(data.rig) if e.id in (*pair, "exhaust_restriction", "tube")]
+    effects += [e for e in effects_of(data.rig) if e.id in ("polytropic_index", "dead_band_width")]
+    current, trials = try_effects(baseline, data, effects, np.random.default_rng(1))
+    fitted = [t.fitted is not current for t in trials if t.effect.id in pair]
+    assert fitted == [True, True]
 
 
 def test_every_run_of_the_menu_can_be_made(tmp_path: Path) -> None:

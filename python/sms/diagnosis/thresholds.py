@@ -37,10 +37,12 @@ DETECTION = 3.0
 SIGNIFICANT = 0.01
 """Largest chance, over all candidates of a round together, of naming one on data without any effect. Convention: 1 %.
 """
-MOST_FITS = 5
-"""Effects of a round that are fitted in full, each fit a simulation of every record. Run time."""
 ALIKE = 0.95
 """Cosine of two sensitivities from which two effects cannot be told apart by them. Judgement."""
+SAME = 0.999
+"""The same before what is known is taken from them: one equation to these signals. Numerics: a sensitivity is right to
+three digits.
+"""
 
 
 # ---- Judgement on the validation records -----------------------------------------------------------

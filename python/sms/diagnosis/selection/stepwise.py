@@ -67,6 +67,7 @@ from sms.diagnosis.thresholds import (
     LEAST_SHARE,
     MOST_CAUSES,
     NEARLY_ALL,
+    SAME,
     TRIED_BY_SLOPE,
 )
 from sms.estimation.least_squares import changed
@@ -116,7 +117,7 @@ def _promising(
     nearby: Mapping[Effect, Fitted] | None,
 ) -> dict[int, Fitted]:
     """By index the effects that are fitted: the best by finite steps and by slope, each in a direction of its own, then
-    what is alike to the best of them or acts in its equation.
+    what is alike to the best of them or acts in its equation, and what is the same as one of them to these signals.
     """
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
@@ -153,13 +154,22 @@ def _promising(
             and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
         )
     ]
-    first |= {k: candidate(k) for k in rivals if k not in first}
+    # What is known tells some effects apart that are one equation to these signals: a tank's volume, and all its flow.
+    same = _cosine(raw_columns(current, data.identify, effects)) > SAME
+    rivals += np.flatnonzero(same[list(first)].any(axis=0)).tolist()
+    first |= {k: candidate(k) for k in dict.fromkeys(rivals) if k not in first}
     return leaders_settled(
         first,
         left,
         lambda one, other: bool(alike[one, other]),
         data,
     )
+
+
+def _cosine(columns: Array) -> Array:
+    """(m, m), of columns (rows, m): 0..1."""
+    unit = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    return np.asarray(np.abs(unit.T @ unit))
 
 
 def _fitted(
