@@ -282,8 +282,7 @@ void add_running(py::class_<Bound>& c) {
           [](const Bound& bound, int status) {
             return bound.why(choice<sms_status>("status", status, SMS_WRONG_ABI + 1));
           },
-          py::arg("status"),
-          "What a status of advance() means for this plant, in words.")
+          py::arg("status"), "What a status of advance() means for this plant, in words.")
       .def("record", &Bound::record, py::arg("rows"), py::arg("channels"), py::arg("draws"),
            "The rows of a whole run with their readings as loggers have them: late clocks, then a Channel a reading; "
            "draws "

@@ -64,17 +64,9 @@ est::PlatformRecord make_record(double step, const Eigen::MatrixX3d& command, co
                                 Eigen::VectorXd supply_pressure, Eigen::VectorXd roll, Eigen::VectorXd pitch,
                                 const std::map<std::string, double>& conditions, const Eigen::MatrixX3d& setpoint,
                                 const std::string& hold) {
-  return {time_step("step", step),
-          columns(command),
-          columns(extension),
-          columns(pressure_lower),
-          columns(pressure_upper),
-          std::move(supply_pressure),
-          std::move(roll),
-          std::move(pitch),
-          conditions_of(conditions),
-          columns(setpoint),
-          hold_of(hold)};
+  return {time_step("step", step),   columns(command),           columns(extension), columns(pressure_lower),
+          columns(pressure_upper),   std::move(supply_pressure), std::move(roll),    std::move(pitch),
+          conditions_of(conditions), columns(setpoint),          hold_of(hold)};
 }
 
 Eigen::Vector3d of_legs(const Noise& noise, const std::string& signal) {

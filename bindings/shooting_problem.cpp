@@ -21,15 +21,9 @@ est::BenchRecord make_bench_record(double step, Eigen::VectorXd command, Eigen::
                                    Eigen::VectorXd pressure_lower, Eigen::VectorXd pressure_upper,
                                    Eigen::VectorXd supply_pressure, const std::map<std::string, double>& conditions,
                                    Eigen::VectorXd setpoint, const std::string& hold) {
-  return {time_step("step", step),
-          std::move(command),
-          std::move(extension),
-          std::move(pressure_lower),
-          std::move(pressure_upper),
-          std::move(supply_pressure),
-          conditions_of(conditions),
-          std::move(setpoint),
-          hold_of(hold)};
+  return {time_step("step", step),   std::move(command),        std::move(extension),
+          std::move(pressure_lower), std::move(pressure_upper), std::move(supply_pressure),
+          conditions_of(conditions), std::move(setpoint),       hold_of(hold)};
 }
 
 est::BenchNoise bench_noise(const Noise& noise) {
@@ -65,14 +59,8 @@ est::TankPlantRecord make_tank_record(double step, Eigen::VectorXd command, Eige
                                       Eigen::VectorXd temperature, Eigen::VectorXd supply_pressure,
                                       const std::map<std::string, double>& conditions, const std::string& hold,
                                       const std::string& valve) {
-  return {time_step("step", step),
-          std::move(command),
-          std::move(pressure),
-          std::move(temperature),
-          std::move(supply_pressure),
-          conditions_of(conditions),
-          hold_of(hold),
-          valve_law_of(valve)};
+  return {time_step("step", step),    std::move(command),        std::move(pressure), std::move(temperature),
+          std::move(supply_pressure), conditions_of(conditions), hold_of(hold),       valve_law_of(valve)};
 }
 
 std::unique_ptr<TankPlantProblem> make_tank_plant_problem(std::vector<est::TankPlantRecord> records, const Noise& noise,

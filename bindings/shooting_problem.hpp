@@ -3,6 +3,7 @@
 
 #include <pybind11/eigen.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,8 +48,7 @@ inline sms::estimation::WindowOptions options_of(double window, int threads) {
 
 // Of the integration, s, and where the record says that nothing asks for short ones; none: the same.
 inline sms::estimation::LongestSteps longest_steps(double everywhere, const std::optional<double>& elsewhere) {
-  return {time_step("longest_step", everywhere),
-          time_step("longest_step_elsewhere", elsewhere.value_or(everywhere))};
+  return {time_step("longest_step", everywhere), time_step("longest_step_elsewhere", elsewhere.value_or(everywhere))};
 }
 
 // (ParamIndex, by how much it is larger) from names.
@@ -92,7 +92,8 @@ template <typename Record, typename Command>
 void need_commands(const std::vector<Record>& records, const Command& command_of) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (command_of(records[i]).size() == 0) {
-      throw py::value_error("record " + std::to_string(i) + " has no command, which a problem without a simulated "
+      throw py::value_error("record " + std::to_string(i) +
+                            " has no command, which a problem without a simulated "
                             "controller needs");
     }
   }
@@ -136,16 +137,14 @@ auto bind_shooting_problem(py::module_& m, const char* name) {
             const Exclusive alone(&p);
             p.settle(params);
           },
-          py::arg("params"),
-           "Let later searches for initial states begin at the best ones of these parameters.")
+          py::arg("params"), "Let later searches for initial states begin at the best ones of these parameters.")
       .def(
           "errors",
           [](const Problem& p, const typename Problem::template Machine<double>& params) {
             const Exclusive alone(&p);
             return p.errors(params);
           },
-          py::arg("params"),
-           "(rows,): predicted less measured over the noise, at the best initial states.")
+          py::arg("params"), "(rows,): predicted less measured over the noise, at the best initial states.")
       .def(
           "hidden",
           [](const Problem& p, const typename Problem::template Machine<double>& params, int knots) {
@@ -161,7 +160,7 @@ auto bind_shooting_problem(py::module_& m, const char* name) {
             return p.hidden(params, knots);
           },
           py::arg("params"), py::arg("knots"),
-           "(rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.");
+          "(rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.");
   return problem;
 }
 

@@ -38,9 +38,8 @@ void bind_status(py::module_& m) {
       },
       py::arg("status"), py::arg("message"), "Raises the exception of a status other than 0.");
   m.def(
-      "status_string",
-      [](int status) { return sms_status_string(choice<sms_status>("status", status, kStatuses)); }, py::arg("status"),
-      "What a status means, in a few words.");
+      "status_string", [](int status) { return sms_status_string(choice<sms_status>("status", status, kStatuses)); },
+      py::arg("status"), "What a status means, in a few words.");
 }
 
 void raise_status(sms_status status, const std::string& message) {
