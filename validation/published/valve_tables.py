@@ -81,7 +81,7 @@ def main() -> None:
     print("opening   charged    vented    charged    vented    together   declared")
     declared = [PARAMETERS[f"flow_map_feed_lower_{k + 1}"].uncertainty for k in range(len(KNOTS))]
     columns = [spread(True), spread(False), reading(True), reading(False), half_widths(), declared]
-    for opening, *row in zip(KNOTS, *columns, strict=True):
+    for opening, row in zip(KNOTS, np.array(columns).T, strict=True):
         print(f"{opening:5.2f} V" + "".join(f"{100.0 * x:8.1f} %" for x in row))
 
 

@@ -24,6 +24,8 @@ from sms.parameters import PARAMETERS
 from sms.simulation import MEAN_PRESSURE
 
 PERIOD = 1e-3  #: s; of the controller
+MOST_PERIODS = 60_000
+"""Of one call of the core."""
 LEGS = 3
 START_HEIGHT = 0.32  #: m; a little above the lower end of the stroke
 STEP = 2.5e-4  #: s; of the integrator
@@ -135,10 +137,10 @@ class VirtualRig:
         left = periods
         while left > 0:
             self._switch()
-            count = left
+            count = min(left, MOST_PERIODS)
             if self._due and self._due[0][0] < end:
                 until_due = round((self._due[0][0] - self.time) / PERIOD)
-                count = min(left, max(1, until_due))
+                count = min(count, max(1, until_due))
             frames += self._core.step(count)
             left -= count
         self.frames_out += len(frames)
