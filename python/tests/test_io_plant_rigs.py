@@ -120,7 +120,7 @@ def test_a_half_width_in_model_is_that_of_all_its_parameters(
     def declared(text: str) -> set[float]:
         return {load_rig(bench(tmp_path, text)).declared(n).uncertainty for n in names}
 
-    assert declared(BENCH) == {PARAMETERS[names[0]].uncertainty}
+    assert declared(BENCH) == {PARAMETERS[n].uncertainty for n in names}
     assert list(declared(BENCH.replace("[model]", f'[model]\n{key} = "1.5 %"'))) == pytest.approx(
         [0.015]
     )
@@ -249,16 +249,16 @@ def test_readings_in_another_unit_are_an_error_with_the_line_to_write(
 @pytest.mark.parametrize("step", [0.0, -0.1, 0.2, 5.0, float("nan"), float("inf")])
 def test_the_core_refuses_windows_of_a_few_samples(step: float) -> None:
     """A record in seconds of which the file has milliseconds brought the process down."""
-    record = sms._core.BenchRecord(
-        step=step,
-        command=np.full(600, 5.0),
-        extension=np.full(600, 0.2),
-        pressure_lower=np.full(600, 3e5),
-        pressure_upper=np.full(600, 3e5),
-    )
     noise = {"extension": 1e-4, "supply_pressure": 300.0}
     noise |= {"chamber_pressure_lower": 300.0, "chamber_pressure_upper": 300.0}
     with pytest.raises(ValueError, match="step"):
+        record = sms._core.BenchRecord(
+            step=step,
+            command=np.full(600, 5.0),
+            extension=np.full(600, 0.2),
+            pressure_lower=np.full(600, 3e5),
+            pressure_upper=np.full(600, 3e5),
+        )
         sms._core.BenchProblem(records=[record], noise=noise)
 
 
