@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -216,7 +217,10 @@ def test_a_model_that_has_forgotten_its_sensitivities_gives_the_same_sizes(tmp_p
     effect = fitted.hypothesis.causes[0]
     forgotten = without_sensitivities(fitted)
     assert forgotten.slopes == {}
-    sizes, again = (record_by_record(f, effect, data) for f in (fitted, forgotten))
+    # Each with its own first fit of the validation records: a second one begins at the slopes of the first.
+    sizes, again = (
+        record_by_record(f, effect, replace(data, refitted_of={})) for f in (fitted, forgotten)
+    )
     assert list(sizes) == list(again)
-    for record, size in sizes.items():  # a fit keeps the sensitivities of its last step but one
-        np.testing.assert_allclose(again[record], size, rtol=0.01)
+    for record, size in sizes.items():
+        np.testing.assert_allclose(again[record], size, rtol=1e-3)

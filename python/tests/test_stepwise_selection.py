@@ -159,9 +159,9 @@ def test_the_answer_says_what_is_left_beside_the_cause(leaking_bench: Diagnosis)
     assert 0.5 < cause.share_low <= cause.share <= cause.share_high <= 1.0
     left = answer.remainder
     assert isinstance(left, Unexplained)
-    assert not left.practically_significant
-    least, most = 1.0 - cause.share_high, 1.0 - cause.share_low
-    assert least - 0.02 < left.share_of_excess < most + 0.02  # the final values leave less
+    assert not left.practically_significant and left.share_of_excess == pytest.approx(
+        1.0 - cause.share, abs=0.02
+    )
     assert set(left.rms) == set(left.floor) == set(left.tolerated)
     assert left.sentence in answer.conclusion
 

@@ -46,8 +46,13 @@ class ScoreTests:
     @cached_property
     def cosine(self) -> Array:
         """(m, m): similarity of sensitivities, 0..1."""
-        unit = self.sensitivity / np.maximum(np.linalg.norm(self.sensitivity, axis=0), 1e-300)
-        return np.asarray(np.abs(unit.T @ unit))
+        return cosines(self.sensitivity)
+
+
+def cosines(columns: Array) -> Array:
+    """(m, m): similarity of columns (rows, m), 0..1."""
+    unit = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    return np.asarray(np.abs(unit.T @ unit))
 
 
 def score_tests(

@@ -59,7 +59,7 @@ from sms.diagnosis.selection.judgement import (
 )
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.pairs import try_pairs
-from sms.diagnosis.selection.score_test import ScoreTests
+from sms.diagnosis.selection.score_test import ScoreTests, cosines
 from sms.diagnosis.thresholds import (
     ALIKE,
     CANDIDATE_STEPS,
@@ -155,7 +155,7 @@ def _promising(
         )
     ]
     # What is known tells some effects apart that are one equation to these signals: a tank's volume, and all its flow.
-    same = _cosine(raw_columns(current, data.identify, effects)) > SAME
+    same = cosines(raw_columns(current, data.identify, effects)) > SAME
     rivals += np.flatnonzero(same[list(first)].any(axis=0)).tolist()
     first |= {k: candidate(k) for k in dict.fromkeys(rivals) if k not in first}
     return leaders_settled(
@@ -164,12 +164,6 @@ def _promising(
         lambda one, other: bool(alike[one, other]),
         data,
     )
-
-
-def _cosine(columns: Array) -> Array:
-    """(m, m), of columns (rows, m): 0..1."""
-    unit = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    return np.asarray(np.abs(unit.T @ unit))
 
 
 def _fitted(
