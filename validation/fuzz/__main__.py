@@ -80,10 +80,22 @@ def bindings(
     from validation.fuzz.bindings import Tallies, load_core, run  # noqa: PLC0415
     from validation.fuzz.signatures import functions_of  # noqa: PLC0415
 
-    core = load_core(module)
+    try:
+        core = load_core(module)
+    except ImportError as problem:
+        raise typer.BadParameter(
+            f"{problem}; give the file that cmake --build --preset sanitize-module makes, _core*.so",
+            param_hint="--module",
+        ) from problem
+    functions = functions_of(core)
+    if not any(only in function.label for function in functions):
+        raise typer.BadParameter(
+            f"no function of the module holds '{only}'; without --only all are called",
+            param_hint="--only",
+        )
     seed = secrets.randbits(32) if seed is None else seed
     print(f"seed {seed}; {core.build_info}", flush=True)
-    tallies = Tallies(functions_of(core))
+    tallies = Tallies(functions)
     for one in run(core, seed, range(first, first + count), only):
         tallies.count(one)
         if verbose or one.failed:

@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 from sms import _core
+from typer.testing import CliRunner
 
 from validation.fuzz import bindings
+from validation.fuzz.__main__ import app
 from validation.fuzz.bindings import Outcome, run
 from validation.fuzz.calls import RETURNED, NotMadeError, judge
 from validation.fuzz.signatures import Function, functions_of
@@ -104,3 +106,16 @@ def test_the_command_prints_a_table() -> None:
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
     assert "seed 3: " in done.stdout and "calls: " in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--only", "nosuchfunction"], "no function of the module holds 'nosuchfunction'"),
+        (["--module", "no_module.so"], "sanitize-module"),
+    ],
+)
+def test_what_is_not_there_is_named(given: list[str], said: str) -> None:
+    answer = CliRunner().invoke(app, ["bindings", *given], env={"COLUMNS": "300"})
+    assert answer.exit_code == 2
+    assert said in " ".join(answer.output.replace("│", " ").split())
