@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib.machinery import EXTENSION_SUFFIXES
-from importlib.util import module_from_spec, spec_from_file_location
+from collections.abc import Sequence
+from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec
+from importlib.util import spec_from_file_location
 from pathlib import Path
+from types import ModuleType
 
 CHOICES = ("AUTO", "ON", "OFF")
 
@@ -33,8 +35,8 @@ def takes_second(wanted: str, runs_avx2: bool) -> bool:
     return wanted != "OFF" and runs_avx2
 
 
-def load() -> None:
-    """Makes the chosen copy `sms._core`."""
+def decide() -> None:
+    """Decides which copy will be sms._core; imported only where the environment asks for one of them."""
     wanted = os.environ.get("SMS_AVX2", "").upper() or "AUTO"
     if wanted not in CHOICES:
         raise ImportError(
@@ -45,10 +47,12 @@ def load() -> None:
         from sms import _cpu  # noqa: PLC0415  # carried beside a second copy alone
 
         if takes_second(wanted, _cpu.runs_avx2()):
-            _load_as("sms._core", file)
+            sys.meta_path.insert(0, _SecondCopy(file))
+    if wanted == "AUTO":
+        return
     from sms import _core  # noqa: PLC0415  # only now is decided which
 
-    if wanted != "AUTO" and _core.uses_avx2() != (wanted == "ON"):
+    if _core.uses_avx2() != (wanted == "ON"):
         raise ImportError(
             f"SMS_AVX2={wanted}: this installation has a single core, compiled "
             f"{'with' if _core.uses_avx2() else 'without'} AVX2; unset SMS_AVX2, "
@@ -56,20 +60,22 @@ def load() -> None:
         )
 
 
-def _load_as(name: str, file: Path) -> None:
-    spec = spec_from_file_location(name, file)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{file} is no extension module of this Python")
-    module = module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    setattr(sys.modules["sms"], "_core", module)  # noqa: B010  # as an import does
+class _SecondCopy:
+    """Finds it where sms._core is imported."""
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        return spec_from_file_location(fullname, self.file) if fullname == "sms._core" else None
 
 
-def _load_or_say() -> None:
+def _decide_or_say() -> None:
     """For the command `sms` a wrong SMS_AVX2 is a wrong input like any other: one sentence and exit 2."""
     try:
-        load()
+        decide()
     except ImportError as wrong:
         if Path(sys.argv[0]).stem == "sms" and "SMS_AVX2" in str(wrong):
             print(f"sms: {wrong}", file=sys.stderr)
@@ -77,4 +83,4 @@ def _load_or_say() -> None:
         raise
 
 
-_load_or_say()
+_decide_or_say()

@@ -59,3 +59,22 @@ def test_a_single_core_is_what_it_was_compiled_to_be() -> None:
     done = imported_with(other)
     assert done.returncode != 0
     assert f"SMS_AVX2={other}: this installation has a single core" in done.stderr
+
+
+def test_the_help_of_the_command_waits_for_no_numbers() -> None:
+    code = (
+        "import sys; sys.argv = ['sms', '--help']\n"
+        "from sms.cli import main\n"
+        "try:\n    main()\nfinally:\n"
+        "    print(sorted({'numpy', 'scipy', 'pandas', 'sms._core'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout.splitlines()[-1] == "[]", done.stderr
+
+
+def test_every_public_name_is_there() -> None:
+    code = "import sms; print(len([getattr(sms, n) for n in sms.__all__]), len(set(dir(sms))))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    count, listed = map(int, done.stdout.split())
+    assert count > 40, done.stderr
+    assert listed >= count

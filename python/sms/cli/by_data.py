@@ -6,7 +6,7 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import typer
@@ -20,23 +20,7 @@ from sms.mechanism_file import load_mechanism
 if TYPE_CHECKING:
     from sms.io.table import Table
 
-MechanismFile = Annotated[
-    str | None,
-    typer.Option(
-        "--mechanism",
-        metavar="FILE",
-        help="A mechanism given by data (docs/mechanisms.md): a TOML file, or one that is shipped: "
-        "*three_rps*, *dietmaier_hexapod*.",
-    ),
-]
 NOT_DRIVABLE = 1
-
-
-def refuse_with_mechanism(settings: Sequence[str], others: Mapping[str, object]) -> None:
-    """InputError for an option that is of the built-in platform."""
-    for name, value in {"--set": list(settings) or None, **others}.items():
-        if value is not None:
-            raise InputError(f"{name}: it is of the built-in platform; leave it or --mechanism out")
 
 
 def ik(file: str, given: Mapping[str, float], as_json: bool) -> None:
@@ -100,27 +84,10 @@ def workspace(file: str, out: Path, as_json: bool) -> None:
     print(f"written: {out / 'workspace.json'}")
 
 
-def path(
-    poses: Annotated[
-        Path,
-        typer.Argument(
-            help="A table with a pose a row: *x [m]* ... *yaw [deg]*; what lacks is the home pose's."
-        ),
-    ],
-    mechanism: MechanismFile = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON, in SI units, for another program.")
-    ] = False,
-) -> None:
-    """Is there a singular pose, or a leg out of its range, on a path? Said before the motion is driven.
-
-    The path is straight, in the driven coordinates, from each pose to the next. The exit code is 1 where it cannot be
-    driven.
-    """
+def path(poses: Path, mechanism: str, as_json: bool) -> None:
+    """What is singular or out of reach on a path; Exit(NOT_DRIVABLE) where it cannot be driven."""
     from sms.io.json_files import json_text  # noqa: PLC0415
 
-    if mechanism is None:
-        raise InputError("--mechanism: name the mechanism's file, such as three_rps")
     of = load_mechanism(mechanism)
     wanted, lines = _read_poses(poses, of)
     try:

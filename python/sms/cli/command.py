@@ -12,7 +12,6 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
-from sms import _core
 from sms.cli import (
     calibrate,
     can,
@@ -45,7 +44,9 @@ BAD_INPUT = 2
 
 def _version(wanted: bool) -> None:
     if wanted:
-        print(_core.__version__)
+        from sms import __version__  # noqa: PLC0415 (the core; --help must not wait for it)
+
+        print(__version__)
         raise typer.Exit
 
 

@@ -7,20 +7,16 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sms import StatusError, forward_kinematics, inverse_kinematics
-from sms._core import Params
-from sms.cli import by_data
 from sms.cli.assets import Assets
-from sms.cli.by_data import MechanismFile
 from sms.errors import InputError, did_you_mean
-from sms.kinematics import ForwardKinematics, InverseKinematics
-from sms.parameter_files import load_params
-from sms.parameters import PARAMETERS
 from sms.report.assets import Place
+
+if TYPE_CHECKING:
+    from sms import ForwardKinematics, InverseKinematics, Params
 
 AsJson = Annotated[
     bool, typer.Option("--json", help="Print JSON, in SI units, for another program.")
@@ -32,6 +28,16 @@ Settings = Annotated[
         metavar="NAME=VALUE",
         help="A parameter other than its default, in SI units; may be repeated. "
         "docs/parameters.md lists them. A file (geometry.toml) sets all that its [parameters] hold.",
+    ),
+]
+
+MechanismFile = Annotated[
+    str | None,
+    typer.Option(
+        "--mechanism",
+        metavar="FILE",
+        help="A mechanism given by data (docs/mechanisms.md): a TOML file, or one that is shipped: "
+        "*three_rps*, *dietmaier_hexapod*.",
     ),
 ]
 
@@ -50,7 +56,7 @@ def register(app: typer.Typer) -> None:
     app.command(
         epilog="Example: **sms path --mechanism three_rps poses.csv**; poses.csv has a row a pose and columns such "
         "as *z [m]*, *roll [deg]*."
-    )(by_data.path)
+    )(path)
 
 
 def ik(
@@ -78,7 +84,7 @@ def ik(
     unit = math.pi / 180.0 if deg else 1.0
     only_with_mechanism = {"x": x, "y": y, "z": z, "yaw": yaw}
     if mechanism is not None:
-        by_data.refuse_with_mechanism(settings, {"--height": height})
+        _refuse_with_mechanism(settings, {"--height": height})
         said = {**only_with_mechanism, "roll": roll, "pitch": pitch}
         angles = ("roll", "pitch", "yaw")
         given = {
@@ -86,6 +92,8 @@ def ik(
             for name, value in said.items()
             if value is not None
         }
+        from sms.cli import by_data  # noqa: PLC0415 (numpy and the core; --help must not wait for them)
+
         with bad_input():
             by_data.ik(mechanism, given, as_json)
         return
@@ -97,6 +105,8 @@ def ik(
             n for n, v in (("roll", roll), ("pitch", pitch), ("height", height)) if v is None
         ]
         raise InputError(f"ik: --{missing[0]} is missing; say roll, pitch and height")
+    from sms import inverse_kinematics  # noqa: PLC0415
+
     with bad_input():
         params = machine(settings)
         found = inverse_kinematics(unit * roll, unit * pitch, height, params=params)
@@ -131,7 +141,9 @@ def fk(
     With --mechanism: for the lengths of its actuated legs, in the assembly mode of its home pose.
     """
     if mechanism is not None:
-        by_data.refuse_with_mechanism(settings, {"--extension": extension})
+        _refuse_with_mechanism(settings, {"--extension": extension})
+        from sms.cli import by_data  # noqa: PLC0415
+
         with bad_input():
             by_data.fk(mechanism, length, as_json)
         return
@@ -141,6 +153,8 @@ def fk(
         )
     if extension is None:
         raise InputError("fk: --extension is missing; give three, m")
+    from sms import forward_kinematics  # noqa: PLC0415
+
     with bad_input():
         params = machine(settings)
         found = forward_kinematics(extension, params=params)
@@ -179,7 +193,9 @@ def workspace(
     from the home pose, and what ends it; workspace.json only.
     """
     if mechanism is not None:
-        by_data.refuse_with_mechanism(settings, {})
+        _refuse_with_mechanism(settings, {})
+        from sms.cli import by_data  # noqa: PLC0415
+
         by_data.workspace(mechanism, out, as_json)
         return
     from sms.io import write_text_atomically  # noqa: PLC0415 (pandas takes its time; --help must not)
@@ -203,9 +219,42 @@ def workspace(
     print(f"written: {files[0]}, {files[1]}")
 
 
+def path(
+    poses: Annotated[
+        Path,
+        typer.Argument(
+            help="A table with a pose a row: *x [m]* ... *yaw [deg]*; what lacks is the home pose's."
+        ),
+    ],
+    mechanism: MechanismFile = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON, in SI units, for another program.")
+    ] = False,
+) -> None:
+    """Is there a singular pose, or a leg out of its range, on a path? Said before the motion is driven.
+
+    The path is straight, in the driven coordinates, from each pose to the next. The exit code is 1 where it cannot be
+    driven.
+    """
+    if mechanism is None:
+        raise InputError("--mechanism: name the mechanism's file, such as three_rps")
+    from sms.cli import by_data  # noqa: PLC0415
+
+    by_data.path(poses, mechanism, as_json)
+
+
+def _refuse_with_mechanism(settings: Sequence[str], others: Mapping[str, object]) -> None:
+    """InputError for an option that is of the built-in platform."""
+    for name, value in {"--set": list(settings) or None, **others}.items():
+        if value is not None:
+            raise InputError(f"{name}: it is of the built-in platform; leave it or --mechanism out")
+
+
 @contextmanager
 def bad_input() -> Iterator[None]:
     """A status of the core, raised by what a person typed, as the person's error."""
+    from sms import StatusError  # noqa: PLC0415
+
     try:
         yield
     except StatusError as problem:
@@ -224,7 +273,10 @@ def files_first(settings: Sequence[str]) -> list[str]:
 
 def machine(settings: Sequence[str]) -> Params:
     """The default parameters with each "name=value" and each file (.toml) set. InputError, OutOfRangeError."""
-    params: Params = Params()
+    from sms import Params, StatusError, load_params  # noqa: PLC0415
+    from sms.parameters import PARAMETERS  # noqa: PLC0415
+
+    params = Params()
     for setting in files_first(settings):
         if is_file(setting):
             params = load_params(setting)

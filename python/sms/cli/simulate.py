@@ -13,7 +13,6 @@ from sms.cli.assets import Assets
 from sms.cli.mechanism import AsJson, Settings, bad_input, files_first, is_file
 from sms.data import scenario_file
 from sms.errors import InputError
-from sms.parameters import LEG_PARAMETERS
 from sms.progress import INTERRUPTED_CODE, progress_bar
 from sms.report.assets import Place
 
@@ -105,6 +104,7 @@ def with_scale(scenario: Scenario, scale: float | None) -> Scenario:
 def settings_in_si(settings: list[str]) -> dict[str, float]:
     """--set NAME=VALUE as numbers, a value may carry a unit; and --set FILE, before which the others go."""
     from sms.parameter_files import read_values  # noqa: PLC0415
+    from sms.parameters import LEG_PARAMETERS  # noqa: PLC0415
     from sms.scenario.load import parameter_value  # noqa: PLC0415
 
     values: dict[str, float] = {}

@@ -1,0 +1,98 @@
+"""What `sms` offers; __init__.py imports each name where it is first used."""
+
+from ._core import (
+    Channel,
+    LegParams,
+    NotANumberError,
+    NotConvergedError,
+    OutOfRangeError,
+    OutOfWorkspaceError,
+    Params,
+    StatusError,
+    __version__,
+)
+from .cylinder import friction, rod_force
+from .dynamics import (
+    Energies,
+    LinearModel,
+    Modes,
+    bias_force,
+    eigenfrequencies,
+    energies,
+    forward_dynamics,
+    gravity_force,
+    holding_force,
+    inverse_dynamics,
+    linearise,
+    mass_matrix,
+)
+from .kinematics import (
+    ForwardKinematics,
+    InverseKinematics,
+    Motion,
+    forward_kinematics,
+    forward_motion,
+    inverse_kinematics,
+    inverse_motion,
+    jacobian,
+    pose_jacobian,
+    six_leg_inverse,
+)
+from .mechanism import Mechanism
+from .mechanism_file import load_mechanism
+from .parameter_files import load_params
+from .simulation import (
+    Run,
+    SimulationStoppedError,
+    extensions_of,
+    simulate_bench,
+    simulate_platform,
+    simulate_tank,
+)
+from .views import notebook_progress
+
+__all__ = [
+    "Channel",
+    "Energies",
+    "ForwardKinematics",
+    "InverseKinematics",
+    "LegParams",
+    "LinearModel",
+    "Mechanism",
+    "Modes",
+    "Motion",
+    "NotANumberError",
+    "NotConvergedError",
+    "OutOfRangeError",
+    "OutOfWorkspaceError",
+    "Params",
+    "Run",
+    "SimulationStoppedError",
+    "StatusError",
+    "__version__",
+    "bias_force",
+    "eigenfrequencies",
+    "energies",
+    "extensions_of",
+    "forward_dynamics",
+    "forward_kinematics",
+    "forward_motion",
+    "friction",
+    "gravity_force",
+    "holding_force",
+    "inverse_dynamics",
+    "inverse_kinematics",
+    "inverse_motion",
+    "jacobian",
+    "linearise",
+    "load_mechanism",
+    "load_params",
+    "mass_matrix",
+    "notebook_progress",
+    "pose_jacobian",
+    "rod_force",
+    "simulate_bench",
+    "simulate_platform",
+    "simulate_tank",
+    "six_leg_inverse",
+]
