@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.reference import _inflation
-from sms.diagnosis.selection import candidates, judgement, pairs, stepwise
+from sms.diagnosis.selection import backward_elimination, candidates, judgement, pairs
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step, chosen_by_step
 from sms.diagnosis.selection.outcome import Outcome, Round
@@ -170,17 +170,21 @@ def test_of_nothing_a_cause_takes_no_share() -> None:
 def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(stepwise, "_with_these", lambda found, *rest: [m[0] for m in found])
-    monkeypatch.setattr(stepwise, "_without_one", lambda *rest: None)
+    monkeypatch.setattr(
+        backward_elimination, "with_these", lambda found, *rest: [m[0] for m in found]
+    )
+    monkeypatch.setattr(backward_elimination, "_without_one", lambda *rest: None)
     at_its_end: set[str] = set()
 
     def implausible(effect: Any, final: Any, data: Any) -> str:
         return "fits best at its end" if effect.parameters[0] in at_its_end else ""
 
-    monkeypatch.setattr(stepwise, "implausible", implausible)
-    unsure: set[str] = set()
+    monkeypatch.setattr(backward_elimination, "implausible", implausible)
+    distance: dict[str, float] = {}
     monkeypatch.setattr(
-        stepwise, "_may_be_nothing", lambda effect, *rest: effect.parameters[0] in unsure
+        backward_elimination,
+        "_distance_from_nothing",
+        lambda effect, *rest: (distance.get(effect.parameters[0], 9.0), 1),
     )
 
     def found(name: str) -> list[Trial]:
@@ -200,7 +204,7 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
 
     def without(value: float) -> Outcome | None:
         final = cast(Any, SimpleNamespace(params={"mass": value, "leak": 1e-9}))
-        return stepwise.without_untenable(outcome, final, baseline, data)
+        return backward_elimination.without_untenable(outcome, final, baseline, data)
 
     assert without(3.9) is None
     fewer = without(3.7)
@@ -214,25 +218,30 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     assert fewer.found == [mass]
     assert leak[0].reason == "in the final model fits best at its end"
     at_its_end.clear()
-    unsure.add("leak")
+    distance["leak"] = 3.0  # of 95 %: 3.84
     fewer = without(3.9)
     assert fewer is not None
     assert fewer.found == [mass]
-    outcome = Outcome(cast(Any, None), [], [leak])  # alone it took what there was, however unsure
+    outcome = Outcome(cast(Any, None), [], [leak])  # alone it took what there was, as sure as that
     assert without(3.9) is None
+    distance["leak"] = 0.9  # as far as errors alone go
+    fewer = without(3.9)
+    assert fewer is not None
+    assert not fewer.found
+    assert leak[0].reason == "in the final model its size is within its standard error"
 
 
 @pytest.mark.parametrize(
-    ("off", "alike", "nothing"),
+    ("off", "alike", "expected"),
     [
-        ((1.5, 0.0), 0.0, True),
-        ((2.6, 0.0), 0.0, False),
-        ((1.5, -1.5), 0.99, False),  # each may be nothing, both together not
-        ((1.5, 1.5), 0.99, True),
+        ((1.5, 0.0), 0.0, 2.25),
+        ((2.0, 1.0), 0.0, 5.0),
+        ((1.5, -1.5), 0.99, 450.0),  # each may be nothing, both together not
+        ((1.5, 1.5), 0.99, 2.25 * 2.0 / 1.99),
     ],
 )
-def test_an_interval_that_holds_what_is_declared(
-    off: tuple[float, float], alike: float, nothing: bool
+def test_how_far_an_effect_is_from_what_is_declared(
+    off: tuple[float, float], alike: float, expected: float
 ) -> None:
     """A tube's length and diameter are known as one combination; a conductance of 1.57 +- 0.21 beside it was 1.50."""
     error = np.array([2.0, 3e-3])
@@ -246,7 +255,9 @@ def test_an_interval_that_holds_what_is_declared(
     )
     tube = cast(Any, SimpleNamespace(parameters=("length", "diameter")))
     declared = cast(Any, {"length": 1.0, "diameter": 0.009})
-    assert stepwise._may_be_nothing(tube, cast(Any, final), declared) == nothing
+    distance, count = backward_elimination._distance_from_nothing(tube, cast(Any, final), declared)
+    assert distance == pytest.approx(expected)
+    assert count == 2
 
 
 def test_who_leaves_least_is_carried_on_and_what_is_alike_to_it(
@@ -304,7 +315,7 @@ def test_what_a_cause_took_beside_another_that_is_gone_it_has_to_take_alone(
     def with_these(found: Any, baseline: Any, final: Any, data: Any) -> Any:
         return "".join(m[0].effect for m in found)
 
-    monkeypatch.setattr(stepwise, "_with_these", with_these)
+    monkeypatch.setattr(backward_elimination, "with_these", with_these)
     monkeypatch.setattr(
         Left,
         "by",
@@ -312,12 +323,12 @@ def test_what_a_cause_took_beside_another_that_is_gone_it_has_to_take_alone(
             np.full((4, 1), 1.0 + left_by[fitted]), np.full((4, 1), 1.0 + left_by[fitted])
         ),
     )
-    monkeypatch.setattr(stepwise, "channel_of_its_own", lambda effect, data: None)
-    monkeypatch.setattr(stepwise, "_settled", lambda fitted, left, data: False)
+    monkeypatch.setattr(backward_elimination, "channel_of_its_own", lambda effect, data: None)
+    monkeypatch.setattr(backward_elimination, "settled", lambda fitted, left, data: False)
     for name, stands in (("clock", False), ("tube", True)):
         trial = Trial(cast(Any, name), cast(Any, None), 0.0, np.zeros(1))
         trial.accepted = True
-        found, current = stepwise._backward_elimination(
+        found, current = backward_elimination.backward_elimination(
             [[trial]], cast(Any, ""), cast(Any, name), cast(Any, None)
         )
         assert (found == [[trial]]) == stands

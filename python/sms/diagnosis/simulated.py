@@ -50,10 +50,11 @@ from sms.diagnosis.other_records import unseen
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.remainder import FedEquations, Hidden, Unexplained
 from sms.diagnosis.result import Cause, Diagnosis, NotTestable, ParameterValue, Verdict
+from sms.diagnosis.selection.backward_elimination import without_untenable
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.selection.stepwise import stepwise_selection, without_untenable
+from sms.diagnosis.selection.stepwise import stepwise_selection
 from sms.diagnosis.wording_simulated import (
     conclusion,
     nearest_in_words,

@@ -99,7 +99,7 @@ taking most of what is left where that is within what is tolerated. Convention: 
 """
 JOINT_INTERVAL = 0.95
 """Of a cause among several, systematic errors counted: the interval that must not hold what is declared. Convention: 95
-percent.
+percent. A single one has to be farther from it than errors alone are on average.
 """
 DEPARTS = 1e-3
 """Chance from which on the numbers that are known lie too far from what is declared for a healthy machine, however

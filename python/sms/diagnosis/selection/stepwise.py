@@ -18,13 +18,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.stats import chi2
 
 from sms import _core
 from sms.arrays import Array
 from sms.callbacks import Progress
 from sms.diagnosis.adequacy.residual_energy import (
-    ROLES,
     Left,
     departs,
     logarithms,
@@ -34,6 +32,12 @@ from sms.diagnosis.adequacy.residual_energy import (
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
 from sms.diagnosis.other_records import looked_at_again, refitted
+from sms.diagnosis.selection.backward_elimination import (
+    backward_elimination,
+    beyond_plausible,
+    settled,
+    with_these,
+)
 from sms.diagnosis.selection.candidates import (
     Trial,
     converged,
@@ -52,8 +56,6 @@ from sms.diagnosis.selection.finite_steps import (
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.judgement import (
     ambiguity_group,
-    channel_of_its_own,
-    implausible,
     judge,
     with_substitutes,
 )
@@ -63,7 +65,6 @@ from sms.diagnosis.selection.score_test import ScoreTests, cosines
 from sms.diagnosis.thresholds import (
     ALIKE,
     CANDIDATE_STEPS,
-    JOINT_INTERVAL,
     LEAST_SHARE,
     MOST_CAUSES,
     NEARLY_ALL,
@@ -232,7 +233,7 @@ def stepwise_selection(
     original = Left.by(baseline, data).excess("validate")
     for number in range(1, MOST_CAUSES + 1):
         here = Left.by(current, data)
-        done = _settled(current, here, data) if number == 1 else nothing_left(here, data)
+        done = settled(current, here, data) if number == 1 else nothing_left(here, data)
         if not remaining or done:
             break
         share = 0.1 + 0.75 * number / (MOST_CAUSES + 1)
@@ -264,21 +265,13 @@ def stepwise_selection(
         rounds[last] = with_substitutes(rounds[last], data)
     found = [r.members for r in rounds if r.members]
     judged_alone = len(found) == 1
-    while (beyond := _implausible(found, current, data)) is not None:
+    while (beyond := beyond_plausible(found, current, data)) is not None:
         found = [m for m in found if m is not beyond]
-        current = _with_these(found, baseline, current, data)
+        current = with_these(found, baseline, current, data)
         judged_alone = False
     if not judged_alone:
-        found, current = _backward_elimination(found, baseline, current, data)
+        found, current = backward_elimination(found, baseline, current, data)
     return Outcome(current, rounds, found)
-
-
-def _settled(fitted: Fitted, left: Left, data: Data) -> bool:
-    """Whether there is nothing to look for: hardly more than noise is left, and what is known is nearly as declared.
-
-    With records of the healthy machine what is left counts how far that moved.
-    """
-    return nothing_left(left, data) and (data.healthy is not None or not departs(fitted))
 
 
 def _forget(trials: Sequence[Trial], current: Fitted, data: Data) -> None:
@@ -288,112 +281,3 @@ def _forget(trials: Sequence[Trial], current: Fitted, data: Data) -> None:
             data.refitted_of.pop(id(trial.fitted), None)
             data.unseen_of.pop(id(trial.fitted), None)
             trial.fitted = without_sensitivities(trial.fitted)
-
-
-def _implausible(found: Sequence[list[Trial]], final: Fitted, data: Data) -> list[Trial] | None:
-    """A cause that beside those that came later is at the end of what is plausible, and says so."""
-    for members in found:
-        if reason := implausible(members[0].effect, final, data):
-            for trial in members:
-                trial.accepted, trial.reason = False, f"beside other causes {reason}"
-            return members
-    return None
-
-
-def without_untenable(
-    outcome: Outcome, final: Fitted, baseline: Fitted, data: Data
-) -> Outcome | None:
-    """Without the first cause whose value in the final model is within what is declared of it, or at the end of what is
-    plausible: it is none, whatever it stood in for before the others came. Of several causes none stands whose interval
-    has no effect in it: what another leaves, whose law is known only roughly, has been given its name. None where each
-    can stand.
-    """
-    h = baseline.hypothesis
-    for members in outcome.found:
-        name = members[0].effect.parameters[0]
-        declared = data.rig.declared(name).uncertainty
-        reason = implausible(members[0].effect, final, data)
-        if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
-            reason = "within what is declared"
-        elif len(outcome.found) > 1 and _may_be_nothing(members[0].effect, final, h.start):
-            reason = "its interval of 95 % has no effect in it"
-        if reason:
-            for trial in members:
-                trial.accepted, trial.reason = False, f"in the final model {reason}"
-            kept = [m for m in outcome.found if m is not members]
-            if not kept:
-                return Outcome(baseline, outcome.rounds, kept)
-            current = _with_these(kept, baseline, outcome.final, data)
-            kept, current = _backward_elimination(kept, baseline, current, data)
-            return Outcome(current, outcome.rounds, kept)
-    return None
-
-
-def _may_be_nothing(effect: Effect, final: Fitted, declared: _core.Params) -> bool:
-    """Whether the joint 95 % interval of the effect's parameters, systematic errors counted, holds what is declared."""
-    names = [n for n in effect.parameters if n in final.movable and final.standard_error(n) > 0.0]
-    if not names:
-        return False
-    place = [list(final.hypothesis.free).index(n) for n in names]
-    off = np.array([final.params[n] - declared[n] for n in names])
-    deviation = np.array([final.standard_error(n) for n in names])
-    correlation = final.covariance[np.ix_(place, place)] / np.outer(deviation, deviation)
-    distance = off / deviation @ np.linalg.pinv(correlation, hermitian=True) @ (off / deviation)
-    return float(distance) < float(chi2.ppf(JOINT_INTERVAL, len(names)))
-
-
-def _with_these(
-    found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data
-) -> Fitted:
-    """The baseline with some of the causes of the final model, fitted from its values."""
-    hypothesis, start = baseline.hypothesis, baseline.params.copy()
-    for members in found:
-        hypothesis = extended(hypothesis, members[0].effect, data)
-    for name in hypothesis.free:
-        start[name] = final.params[name]
-    return fit(
-        hypothesis,
-        data.identify,
-        start,
-        nearby=final.slopes,
-        discrepancy=data.allowed(data.identify),
-    )
-
-
-def _backward_elimination(
-    found: list[list[Trial]], baseline: Fitted, current: Fitted, data: Data
-) -> tuple[list[list[Trial]], Fitted]:
-    """The causes that are missed where they are taken out, and their model. What a cause took beside another that is
-    gone, it need not take alone.
-    """
-    while found and (fewer := _without_one(found, baseline, current, data)) is not None:
-        found, current = fewer
-    return found, current
-
-
-def _without_one(
-    found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data
-) -> tuple[list[list[Trial]], Fitted] | None:
-    """Fewer causes and their model, where one has stood in for the others; None where each is missed.
-
-    A cause is missed if without it the others leave at least as much more as a cause has to take, and more than what
-    ends the search: a pair's second one may have stood in for a first one that was not fitted to its end.
-    """
-    left = Left.by(final, data)
-    for members in found:
-        kept = [m for m in found if m is not members]
-        without = _with_these(kept, baseline, final, data)
-        other = Left.by(without, data)
-        channel = channel_of_its_own(members[0].effect, data)
-        counted = [(left, other)]
-        if channel is not None:
-            counted.append((left.of(channel), other.of(channel)))
-        if _settled(without, other, data) or all(
-            now.excess(r) >= (1.0 - LEAST_SHARE) * then.excess(r)
-            for now, then in counted
-            for r in ROLES
-        ):
-            for trial in members:
-                trial.accepted, trial.reason = False, "without it the model leaves hardly more"
-            return kept, without
-    return None

@@ -1,0 +1,144 @@
+"""Causes taken out again: each must be missed, and must stand in the final model.
+
+What a cause took beside another, or before another came, it need not take alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import chi2
+
+from sms import _core
+from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left
+from sms.diagnosis.effects.catalogue import Effect
+from sms.diagnosis.hypothesis import Data, Fitted, fit
+from sms.diagnosis.selection.candidates import Trial
+from sms.diagnosis.selection.finite_steps import extended
+from sms.diagnosis.selection.judgement import channel_of_its_own, implausible
+from sms.diagnosis.selection.outcome import Outcome
+from sms.diagnosis.thresholds import JOINT_INTERVAL, LEAST_SHARE
+
+
+def settled(fitted: Fitted, left: Left, data: Data) -> bool:
+    """Whether there is nothing to look for: hardly more than noise is left, and what is known is nearly as declared.
+
+    With records of the healthy machine what is left counts how far that moved.
+    """
+    return nothing_left(left, data) and (data.healthy is not None or not departs(fitted))
+
+
+def beyond_plausible(found: Sequence[list[Trial]], final: Fitted, data: Data) -> list[Trial] | None:
+    """A cause that beside those that came later is at the end of what is plausible, and says so."""
+    for members in found:
+        if reason := implausible(members[0].effect, final, data):
+            for trial in members:
+                trial.accepted, trial.reason = False, f"beside other causes {reason}"
+            return members
+    return None
+
+
+def without_untenable(
+    outcome: Outcome, final: Fitted, baseline: Fitted, data: Data
+) -> Outcome | None:
+    """Without the first cause whose value in the final model is within what is declared of it, or at the end of what is
+    plausible: it is none, whatever it stood in for before the others came. Of several causes none stands whose interval
+    has no effect in it: what another leaves, whose law is known only roughly, has been given its name. Nor does a
+    single one that is no larger than what errors alone would make of nothing. None where each can stand.
+    """
+    h = baseline.hypothesis
+    several = len(outcome.found) > 1
+    for members in outcome.found:
+        name = members[0].effect.parameters[0]
+        declared = data.rig.declared(name).uncertainty
+        distance, count = _distance_from_nothing(members[0].effect, final, h.start)
+        reason = implausible(members[0].effect, final, data)
+        if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
+            reason = "within what is declared"
+        elif several and distance < float(chi2.ppf(JOINT_INTERVAL, count)):
+            reason = "its interval of 95 % has no effect in it"
+        elif distance < count:  # the mean of chi-square: errors alone would bring it there
+            reason = "its size is within its standard error"
+        if reason:
+            for trial in members:
+                trial.accepted, trial.reason = False, f"in the final model {reason}"
+            kept = [m for m in outcome.found if m is not members]
+            if not kept:
+                return Outcome(baseline, outcome.rounds, kept)
+            current = with_these(kept, baseline, outcome.final, data)
+            kept, current = backward_elimination(kept, baseline, current, data)
+            return Outcome(current, outcome.rounds, kept)
+    return None
+
+
+def _distance_from_nothing(
+    effect: Effect, final: Fitted, declared: _core.Params
+) -> tuple[float, int]:
+    """How far the effect's parameters lie from what is declared, squared and in standard errors, systematic errors
+    counted; and how many they are. Infinite where nothing was to be estimated.
+    """
+    names = [n for n in effect.parameters if n in final.movable and final.standard_error(n) > 0.0]
+    if not names:
+        return np.inf, 0
+    place = [list(final.hypothesis.free).index(n) for n in names]
+    off = np.array([final.params[n] - declared[n] for n in names])
+    deviation = np.array([final.standard_error(n) for n in names])
+    correlation = final.covariance[np.ix_(place, place)] / np.outer(deviation, deviation)
+    distance = off / deviation @ np.linalg.pinv(correlation, hermitian=True) @ (off / deviation)
+    return float(distance), len(names)
+
+
+def with_these(found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data) -> Fitted:
+    """The baseline with some of the causes of the final model, fitted from its values."""
+    hypothesis, start = baseline.hypothesis, baseline.params.copy()
+    for members in found:
+        hypothesis = extended(hypothesis, members[0].effect, data)
+    for name in hypothesis.free:
+        start[name] = final.params[name]
+    return fit(
+        hypothesis,
+        data.identify,
+        start,
+        nearby=final.slopes,
+        discrepancy=data.allowed(data.identify),
+    )
+
+
+def backward_elimination(
+    found: list[list[Trial]], baseline: Fitted, current: Fitted, data: Data
+) -> tuple[list[list[Trial]], Fitted]:
+    """The causes that are missed where they are taken out, and their model. What a cause took beside another that is
+    gone, it need not take alone.
+    """
+    while found and (fewer := _without_one(found, baseline, current, data)) is not None:
+        found, current = fewer
+    return found, current
+
+
+def _without_one(
+    found: Sequence[list[Trial]], baseline: Fitted, final: Fitted, data: Data
+) -> tuple[list[list[Trial]], Fitted] | None:
+    """Fewer causes and their model, where one has stood in for the others; None where each is missed.
+
+    A cause is missed if without it the others leave at least as much more as a cause has to take, and more than what
+    ends the search: a pair's second one may have stood in for a first one that was not fitted to its end.
+    """
+    left = Left.by(final, data)
+    for members in found:
+        kept = [m for m in found if m is not members]
+        without = with_these(kept, baseline, final, data)
+        other = Left.by(without, data)
+        channel = channel_of_its_own(members[0].effect, data)
+        counted = [(left, other)]
+        if channel is not None:
+            counted.append((left.of(channel), other.of(channel)))
+        if settled(without, other, data) or all(
+            now.excess(r) >= (1.0 - LEAST_SHARE) * then.excess(r)
+            for now, then in counted
+            for r in ROLES
+        ):
+            for trial in members:
+                trial.accepted, trial.reason = False, "without it the model leaves hardly more"
+            return kept, without
+    return None
