@@ -229,6 +229,12 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     assert fewer is not None
     assert not fewer.found
     assert leak[0].reason == "in the final model its size is within its standard error"
+    monkeypatch.setattr(backward_elimination, "generalised", lambda fitted, data: fitted)
+    sure = found("gain")[0]  # of a class another member is beyond doubt
+    outcome = Outcome(cast(Any, None), [], [[leak[0], sure]])
+    assert without(3.9) is None
+    distance["gain"] = 0.9
+    assert without(3.9) is not None
 
 
 @pytest.mark.parametrize(

@@ -5,13 +5,14 @@ What a cause took beside another, or before another came, it need not take alone
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.stats import chi2
 
 from sms import _core
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left
+from sms.diagnosis.adequacy.systematic_error import generalised
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit
 from sms.diagnosis.selection.candidates import Trial
@@ -52,13 +53,12 @@ def without_untenable(
     for members in outcome.found:
         name = members[0].effect.parameters[0]
         declared = data.rig.declared(name).uncertainty
-        distance, count = _distance_from_nothing(members[0].effect, final, h.start)
         reason = implausible(members[0].effect, final, data)
         if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
             reason = "within what is declared"
-        elif several and distance < float(chi2.ppf(JOINT_INTERVAL, count)):
+        elif several and _may_be_nothing(members, final, h.start, data, _joint_interval):
             reason = "its interval of 95 % has no effect in it"
-        elif distance < count:  # the mean of chi-square: errors alone would bring it there
+        elif _may_be_nothing(members, final, h.start, data, float):  # the mean of chi-square
             reason = "its size is within its standard error"
         if reason:
             for trial in members:
@@ -70,6 +70,29 @@ def without_untenable(
             kept, current = backward_elimination(kept, baseline, current, data)
             return Outcome(current, outcome.rounds, kept)
     return None
+
+
+def _may_be_nothing(
+    members: Sequence[Trial],
+    final: Fitted,
+    declared: _core.Params,
+    data: Data,
+    bound: Callable[[int], float],
+) -> bool:
+    """Whether errors alone would bring every member of a class where it is. One may be known as nearly as what it is
+    confounded with, a sensor's gain as its zero, where another is beyond doubt. bound: of the squared distance, by the
+    number of parameters.
+    """
+    for trial in members:
+        at = final if trial is members[0] else generalised(trial.fitted, data)
+        distance, count = _distance_from_nothing(trial.effect, at, declared)
+        if distance >= bound(count):
+            return False
+    return True
+
+
+def _joint_interval(count: int) -> float:
+    return float(chi2.ppf(JOINT_INTERVAL, count))
 
 
 def _distance_from_nothing(
