@@ -11,6 +11,40 @@ sms_geometry geometry_of(const Params& params) {
   return geometry;
 }
 
+constexpr py::ssize_t kRows = 128;  // at a time, which stay in the cache
+
+// How rows of an array were solved, and what is known of each.
+struct Solved {
+  Output pose;
+  py::array_t<int> iterations;
+  py::array_t<double> residual;
+  Status status;
+  explicit Solved(py::ssize_t n) : pose(n, 6), iterations(n), residual(n), status(n) {}
+};
+
+// solve(first row, count, poses, convergence, statuses) for up to kRows at a time.
+template <typename Solve>
+void solve_rows(py::ssize_t n, Solved& solved, const Solve& solve) {
+  int *const steps = solved.iterations.mutable_data(), *const statuses = solved.status.mutable_data();
+  double* const error = solved.residual.mutable_data();
+  in_blocks(n, [&](py::ssize_t begin, py::ssize_t end) {
+    sms_convergence convergence[kRows];
+    sms_status status[kRows];
+    for (py::ssize_t first = begin; first < end; first += kRows) {
+      const py::ssize_t count = std::min(kRows, end - first);
+      solve(first, count, solved.pose.row_as<sms_pose>(first), convergence, status);
+      for (py::ssize_t k = 0; k < count; ++k) {
+        steps[first + k] = convergence[k].iterations;
+        error[first + k] = convergence[k].residual;
+        statuses[first + k] = status[k];
+        if (status[k] != SMS_OK) {
+          solved.pose.clear(first + k);
+        }
+      }
+    }
+  });
+}
+
 py::typing::Tuple<Rows, Rows, py::array_t<int>, py::array_t<double>, Status> inverse_kinematics(const Params& params,
                                                                                                 const Column& roll,
                                                                                                 const Column& pitch,
@@ -18,21 +52,26 @@ py::typing::Tuple<Rows, Rows, py::array_t<int>, py::array_t<double>, Status> inv
   const py::ssize_t n = common_size({&roll, &pitch, &height});
   const sms_geometry geometry = geometry_of(params);
   const auto r = roll.unchecked<1>(), p = pitch.unchecked<1>(), h = height.unchecked<1>();
-  const Output pose(n, 6), extension(n, 3);
-  py::array_t<int> iterations(n);
-  py::array_t<double> residual(n);
-  int* const steps = iterations.mutable_data();
-  double* const error = residual.mutable_data();
-  const Status status = each_row(n, {&pose, &extension}, [&](py::ssize_t i) {
-    const double q[3] = {r(i), p(i), h(i)};
-    sms_convergence convergence;
-    const sms_status s =
-        sms_inverse_kinematics(&geometry, q, nullptr, pose.row_as<sms_pose>(i), extension.row(i), &convergence);
-    steps[i] = convergence.iterations;
-    error[i] = convergence.residual;
-    return s;
-  });
-  return py::make_tuple(pose.array(), extension.array(), iterations, residual, status);
+  const Output extension(n, 3);
+  Solved solved(n);
+  solve_rows(
+      n, solved,
+      [&](py::ssize_t first, py::ssize_t count, sms_pose* pose, sms_convergence* convergence, sms_status* status) {
+        double q[3 * kRows];
+        for (py::ssize_t k = 0; k < count; ++k) {
+          q[3 * k] = r(first + k);
+          q[3 * k + 1] = p(first + k);
+          q[3 * k + 2] = h(first + k);
+        }
+        sms_inverse_kinematics_array(&geometry, size_t(count), q, nullptr, pose, extension.row(first), convergence,
+                                     status);
+        for (py::ssize_t k = 0; k < count; ++k) {
+          if (status[k] != SMS_OK) {
+            extension.clear(first + k);
+          }
+        }
+      });
+  return py::make_tuple(solved.pose.array(), extension.array(), solved.iterations, solved.residual, solved.status);
 }
 
 py::typing::Tuple<Rows, py::array_t<int>, py::array_t<double>, Status> forward_kinematics(const Params& params,
@@ -40,19 +79,13 @@ py::typing::Tuple<Rows, py::array_t<int>, py::array_t<double>, Status> forward_k
   const py::ssize_t n = row_count(extension, 3);
   const sms_geometry geometry = geometry_of(params);
   const double* const in = extension.data();
-  const Output pose(n, 6);
-  py::array_t<int> iterations(n);
-  py::array_t<double> residual(n);
-  int* const steps = iterations.mutable_data();
-  double* const error = residual.mutable_data();
-  const Status status = each_row(n, {&pose}, [&](py::ssize_t i) {
-    sms_convergence convergence;
-    const sms_status s = sms_forward_kinematics(&geometry, in + 3 * i, nullptr, pose.row_as<sms_pose>(i), &convergence);
-    steps[i] = convergence.iterations;
-    error[i] = convergence.residual;
-    return s;
-  });
-  return py::make_tuple(pose.array(), iterations, residual, status);
+  Solved solved(n);
+  solve_rows(
+      n, solved,
+      [&](py::ssize_t first, py::ssize_t count, sms_pose* pose, sms_convergence* convergence, sms_status* status) {
+        sms_forward_kinematics_array(&geometry, size_t(count), in + 3 * first, nullptr, pose, convergence, status);
+      });
+  return py::make_tuple(solved.pose.array(), solved.iterations, solved.residual, solved.status);
 }
 
 Answer inverse_motion(const Params& params, const Rows& q, const Rows& qdot, const Rows& qddot) {

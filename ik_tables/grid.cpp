@@ -6,13 +6,11 @@
 #include <optional>
 #include <thread>
 
-#include "sms/inverse_kinematics.hpp"
+#include "sms/kinematics.h"
 #include "text.hpp"
 
 namespace ik_tables {
 namespace {
-
-using Pose = sms::Pose<double>;
 
 // A node without a solution.
 struct Failure {
@@ -21,40 +19,62 @@ struct Failure {
   sms_status status;
 };
 
-// The parasitic coordinates are smooth along a row. The parabola through the last three poses meets the next one so
-// closely that a single Newton step is left, where the last pose alone leaves two.
-Pose extrapolated(const std::vector<Pose>& solved) {
-  const std::size_t n = solved.size();
-  if (n < 3) {
-    return solved.back();
-  }
-  const Pose &a = solved[n - 1], &b = solved[n - 2], &c = solved[n - 3];
-  const auto next = [](double last, double before, double first) { return 3.0 * (last - before) + first; };
-  return {a.roll, a.pitch, a.height, next(a.yaw, b.yaw, c.yaw), next(a.x, b.x, c.x), next(a.y, b.y, c.y)};
-}
+constexpr std::size_t kRowsAtATime = 8;  // the library solves four poses at once where the processor can
 
-// A row is one roll and one height; its nodes are the pitches.
-std::optional<Failure> solve_row(const sms::Geometry<double>& geometry, std::size_t i, std::size_t l, Table& table) {
-  const Pose rest = sms::rest_pose(geometry);
-  std::vector<Pose> solved = {rest};
-  solved.reserve(table.pitch.size() + 1);
+// Of a row, the last poses that were solved, the last one first.
+struct Row {
+  sms_pose last[3];
+  std::size_t solved;
+
+  // The parasitic coordinates are smooth along a row. The parabola through the last three poses meets the next one so
+  // closely that a single Newton step is left, where the last pose alone leaves two.
+  sms_pose extrapolated() const {
+    const sms_pose &a = last[0], &b = last[1], &c = last[2];
+    if (solved < 3) {
+      return a;
+    }
+    const auto next = [](double latest, double before, double first) { return 3.0 * (latest - before) + first; };
+    return {a.roll, a.pitch, a.height, next(a.yaw, b.yaw, c.yaw), next(a.x, b.x, c.x), next(a.y, b.y, c.y)};
+  }
+
+  void add(const sms_pose& pose) {
+    last[2] = last[1];
+    last[1] = last[0];
+    last[0] = pose;
+    ++solved;
+  }
+};
+
+// A row is one roll and one height; its nodes are the pitches. Rows first to end - 1 side by side, node after node.
+std::optional<Failure> solve_rows(const sms_geometry& geometry, std::size_t first, std::size_t end, std::size_t l,
+                                  Table& table) {
+  const std::size_t count = end - first;
+  sms_pose rest;
+  sms_rest_pose(&geometry, &rest);
+  Row row[kRowsAtATime];
+  std::fill_n(row, count, Row{{rest, rest, rest}, 0});
+  double q[3 * kRowsAtATime], extension[3 * kRowsAtATime];
+  sms_pose pose[kRowsAtATime];
+  sms_status status[kRowsAtATime];
   for (std::size_t k = 0; k < table.pitch.size(); ++k) {
-    const sms::Vec3<double> q(table.roll[i], table.pitch[k], table.height[l]);
-    Pose pose;
-    sms::Vec3<double> extension;
-    sms_status status = sms::inverse_kinematics(geometry, q, extrapolated(solved), pose, extension);
-    if (status != SMS_OK) {
-      status = sms::inverse_kinematics(geometry, q, rest, pose, extension);
+    for (std::size_t i = 0; i < count; ++i) {
+      q[3 * i] = table.roll[first + i];
+      q[3 * i + 1] = table.pitch[k];
+      q[3 * i + 2] = table.height[l];
+      pose[i] = row[i].extrapolated();
     }
-    if (status != SMS_OK) {
-      return Failure{i, q, status};
+    sms_inverse_kinematics_array(&geometry, count, q, pose, pose, extension, nullptr, status);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (status[i] != SMS_OK) {
+        status[i] = sms_inverse_kinematics(&geometry, q + 3 * i, &rest, &pose[i], extension + 3 * i, nullptr);
+      }
+      if (status[i] != SMS_OK) {
+        return Failure{first + i, sms::Vec3<double>(q[3 * i], q[3 * i + 1], q[3 * i + 2]), status[i]};
+      }
+      row[i].add(pose[i]);
+      double* node = &table.extension[3 * (((first + i) * table.pitch.size() + k) * table.height.size() + l)];
+      std::copy_n(extension + 3 * i, 3, node);
     }
-    if (k == 0) {
-      solved.clear();  // the rest pose is no node
-    }
-    solved.push_back(pose);
-    double* node = &table.extension[3 * ((i * table.pitch.size() + k) * table.height.size() + l)];
-    std::copy_n(extension.data(), 3, node);
   }
   return std::nullopt;
 }
@@ -86,15 +106,17 @@ std::vector<double> nodes(double lower, double upper, int count, Precision preci
 void solve(const sms::Geometry<double>& geometry, unsigned threads, Progress& progress, Table& table) {
   const std::size_t rolls = table.roll.size();
   table.extension.resize(3 * rolls * table.pitch.size() * table.height.size());
+  const sms_geometry& machine = reinterpret_cast<const sms_geometry&>(geometry);
   std::atomic<std::size_t> next{0}, done{0};
   std::mutex mutex;
   std::optional<Failure> first;
-  // A thread takes all heights of a roll, which lie next to each other in memory.
+  // A thread takes all heights of some rolls, which lie next to each other in memory.
   const auto work = [&] {
-    for (std::size_t i = next++; i < rolls; i = next++) {
+    for (std::size_t i = next.fetch_add(kRowsAtATime); i < rolls; i = next.fetch_add(kRowsAtATime)) {
+      const std::size_t end = std::min(rolls, i + kRowsAtATime);
       std::optional<Failure> failure;
       for (std::size_t l = 0; l < table.height.size() && !failure; ++l) {
-        failure = solve_row(geometry, i, l, table);
+        failure = solve_rows(machine, i, end, l, table);
       }
       if (failure) {
         const std::lock_guard<std::mutex> lock(mutex);
@@ -103,7 +125,7 @@ void solve(const sms::Geometry<double>& geometry, unsigned threads, Progress& pr
         }
         next = rolls;
       }
-      progress.share(double(++done) / double(rolls));
+      progress.share(double(done += end - i) / double(rolls));
     }
   };
   std::vector<std::thread> helpers;

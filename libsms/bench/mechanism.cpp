@@ -208,28 +208,35 @@ void table() {
   measure("table", 1, [&] { ik_tables::solve(geometry, 1, quiet, table); });
 }
 
-// A million unrelated poses, all that is known of each kept: what sms.inverse_kinematics of Python does.
+// A million unrelated poses, all that is known of each kept: what sms.inverse_kinematics and sms.forward_kinematics of
+// Python do.
 void batch() {
-  constexpr const char* kName = "inverse kinematics, batch";
-  if (!wanted(kName)) {
+  constexpr const char *kInverse = "inverse kinematics, batch", *kForward = "forward kinematics, batch";
+  if (!wanted(kInverse) && !wanted(kForward)) {
     return;
   }
-  constexpr int kPoses = 1000000;
+  constexpr std::size_t kPoses = 1000000;
   const Machine<double> machine;
+  const sms_geometry& geometry = machine.mechanism.geometry;
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<double> angle(-0.1, 0.1), height(0.4, 0.6);
   std::vector<double> q;
-  for (int i = 0; i < kPoses; ++i) {
+  for (std::size_t i = 0; i < kPoses; ++i) {
     q.insert(q.end(), {angle(engine), angle(engine), height(engine)});
   }
   std::vector<sms_pose> pose(kPoses);
-  std::vector<double> extension(std::size_t{3} * kPoses);
+  std::vector<double> extension(3 * kPoses);
   std::vector<sms_convergence> convergence(kPoses);
-  measure(kName, kPoses, [&] {
-    for (std::size_t i = 0; i < kPoses; ++i) {
-      require(sms_inverse_kinematics(&machine.mechanism.geometry, &q[3 * i], nullptr, &pose[i], &extension[3 * i],
-                                     &convergence[i]));
-    }
+  std::vector<sms_status> status(kPoses);
+  const auto inverse = [&] {
+    require(sms_inverse_kinematics_array(&geometry, kPoses, q.data(), nullptr, pose.data(), extension.data(),
+                                         convergence.data(), status.data()));
+  };
+  inverse();
+  measure(kInverse, int(kPoses), inverse);
+  measure(kForward, int(kPoses), [&] {
+    require(sms_forward_kinematics_array(&geometry, kPoses, extension.data(), nullptr, pose.data(), convergence.data(),
+                                         status.data()));
   });
 }
 

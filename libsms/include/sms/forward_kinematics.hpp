@@ -69,7 +69,7 @@ struct LinkExcess {
 
 template <typename S>
 inline void set_excess(LinkExcess<S>& excess, int i, const Vec3<Pair<S>>& link, const Pair<S>& length) {
-  const Pair<S> half = Pair<S>(S(0.5)) * (link.squaredNorm() - length * length);
+  const Pair<S> half = Pair<S>(S(0.5)) * (dot(link, link) - length * length);
   excess.actuator(i) = half.actuator();
   excess.panhard(i) = half.rod();
 }
@@ -86,18 +86,18 @@ LinkExcess<S> link_excess(const Geometry<S>& g, const Vec3<S>& actuator_length, 
 
 template <typename V>
 V length_error(const LinkExcess<V>& excess, const Vec3<V>& actuator_length, const Vec3<V>& panhard_length) {
-  const V actuator = excess.actuator.cwiseQuotient(actuator_length).cwiseAbs().maxCoeff();
-  const V panhard = excess.panhard.cwiseQuotient(panhard_length).cwiseAbs().maxCoeff();
-  return actuator > panhard ? actuator : panhard;
+  return larger(largest_magnitude(Vec3<V>(excess.actuator.cwiseQuotient(actuator_length))),
+                largest_magnitude(Vec3<V>(excess.panhard.cwiseQuotient(panhard_length))));
 }
 
 // The linearised problem, ready to be solved for any excess.
 template <typename V>
 struct PoseSolver {
-  LinkSlopes<V> slopes;
-  Elimination<V> eliminated;
-  Mat3<V> actuator_inverse;
-  SineCosine<V> yaw;  // turns a move in the yawed axes into one of x and y
+  Mat3<V> panhard_inverse;     // of the rods' slopes by the parasitic coordinates
+  Mat3<V> parasitic;           // d(yaw, x, y) / d(roll, pitch, height), in the yawed axes
+  Mat3<V> actuator_parasitic;  // the actuators' slopes by the parasitic coordinates
+  Mat3<V> actuator_inverse;    // of their slopes by the driven ones, when the parasitic ones follow
+  SineCosine<V> yaw;           // turns a move in the yawed axes into one of x and y
 };
 
 template <typename S>
@@ -108,11 +108,12 @@ struct PoseStep {
 
 template <typename S, typename V>
 PoseStep<S> newton_step(const PoseSolver<V>& solver, const LinkExcess<S>& excess) {
-  const Vec3<S> held = solver.eliminated.panhard_inverse.template cast<S>() * excess.panhard;
-  const Vec3<S> left = solver.slopes.actuator_parasitic.template cast<S>() * held - excess.actuator;
+  const auto times = [](const Mat3<V>& m, const Vec3<S>& v) { return product(Mat3<S>(m.template cast<S>()), v); };
+  const Vec3<S> held = times(solver.panhard_inverse, excess.panhard);
+  const Vec3<S> left = times(solver.actuator_parasitic, held) - excess.actuator;
   PoseStep<S> step;
-  step.driven = solver.actuator_inverse.template cast<S>() * left;
-  const Vec3<S> yawed = solver.eliminated.parasitic.template cast<S>() * step.driven - held;
+  step.driven = times(solver.actuator_inverse, left);
+  const Vec3<S> yawed = times(solver.parasitic, step.driven) - held;
   const S cosine = S(solver.yaw.cosine), sine = S(solver.yaw.sine);
   step.parasitic << yawed(0), cosine * yawed(1) - sine * yawed(2), sine * yawed(1) + cosine * yawed(2);
   return step;
@@ -130,9 +131,7 @@ inline void advance(Pose<S>& pose, const PoseStep<S>& step, const S& factor) {
 
 template <typename V>
 bool within_largest_angle(const Pose<V>& pose) {
-  using std::abs;
-  return abs(pose.roll) <= largest_angle<V>() && abs(pose.pitch) <= largest_angle<V>() &&
-         abs(pose.yaw) <= largest_angle<V>();
+  return all(largest_magnitude(Vec3<V>(pose.roll, pose.pitch, pose.yaw)) <= largest_angle<V>());
 }
 
 // Newton's method up to the last step. The solver is that of the last step taken.
@@ -161,30 +160,42 @@ template <typename V>
 LinkExcess<V> evaluate_pose(const Geometry<V>& g, const Vec3<V>& length, const Pose<V>& pose, PoseSolver<V>& solver) {
   const PoseAngles<V> angles = angles_of(pose);
   LinkExcess<V> excess;
+  LinkSlopes<V> slopes;
   for (int i = 0; i < 3; ++i) {
     const YawedLink<Pair<V>> links = yawed_links(g, i, pose, angles);
-    set_slopes(solver.slopes, i, links, angles.pitch);
+    set_slopes(slopes, i, links, angles.pitch);
     set_excess(excess, i, links.link, Pair<V>(length(i), g.panhard_length(i)));
   }
-  eliminate_parasitic(solver.slopes, solver.eliminated);
-  solver.actuator_inverse = inverse(solver.eliminated.actuator);
+  Elimination<V> eliminated;
+  eliminate_parasitic(slopes, eliminated);
+  solver.panhard_inverse = eliminated.panhard_inverse;
+  solver.parasitic = eliminated.parasitic;
+  solver.actuator_parasitic = slopes.actuator_parasitic;
+  solver.actuator_inverse = inverse(eliminated.actuator);
   solver.yaw = angles.yaw;
   return excess;
 }
 
+// Of poses side by side those that have arrived stand still until all have, so that none depends on its neighbours.
 template <typename V>
-sms_status solve_pose(const Geometry<V>& g, const Vec3<V>& length, PoseSolution<V>& solution, int& iterations) {
-  for (iterations = 0; iterations < largest_iteration_count();) {
-    const LinkExcess<V> excess = evaluate_pose(g, length, solution.pose, solution.solver);
-    const PoseStep<V> step = newton_step(solution.solver, excess);
-    const V driven = step.driven.cwiseAbs().maxCoeff(), parasitic = step.parasitic.cwiseAbs().maxCoeff();
-    const V largest = driven > parasitic ? driven : parasitic;
-    advance(solution.pose, step, damping(largest));
-    ++iterations;
+sms_status solve_pose(const Geometry<V>& g, const Vec3<V>& length, PoseSolution<V>& solution, Count<V>& iterations) {
+  auto moving = V(0) < V(1);
+  iterations = Count<V>(0);
+  for (int n = 0; n < largest_iteration_count(); ++n) {
+    PoseSolver<V> solver;
+    const LinkExcess<V> excess = evaluate_pose(g, length, solution.pose, solver);
+    const PoseStep<V> step = newton_step(solver, excess);
+    const V largest = larger(largest_magnitude(step.driven), largest_magnitude(step.parasitic));
+    Pose<V> stepped = solution.pose;
+    advance(stepped, step, damping(largest));
+    renew(moving, solution.pose, stepped);
+    renew(moving, solution.solver, solver);
+    iterations += select(moving, Count<V>(1), Count<V>(0));
     if (!within_largest_angle(solution.pose)) {
       return SMS_OUT_OF_WORKSPACE;
     }
-    if (largest < close_step<V>()) {
+    moving = moving && !(largest < close_step<V>());
+    if (!any(moving)) {
       return SMS_OK;
     }
   }
@@ -226,13 +237,15 @@ sms_status forward_kinematics(const Geometry<S>& g, const Vec3<S>& extension, co
     return SMS_NOT_A_NUMBER;
   }
   const Vec3<S> length = g.actuator_length + extension;
-  if (!(value_of(length).minCoeff() > V(0))) {
-    return SMS_OUT_OF_WORKSPACE;
+  for (int i = 0; i < 3; ++i) {
+    if (!all(value_of(length(i)) > V(0))) {
+      return SMS_OUT_OF_WORKSPACE;
+    }
   }
   const Geometry<V>& geometry = value_of(g);
-  PoseSolution<V> solution;
-  solution.pose = start;
-  int iterations = 0;
+  const Mat3<V> none = Mat3<V>::Zero();
+  PoseSolution<V> solution = {start, {none, none, none, none, {V(0), V(1)}}};
+  Count<V> iterations(0);
   const sms_status status = solve_pose(geometry, value_of(length), solution, iterations);
   const Pose<S> found = last_step_of_pose(g, geometry, length, solution);
   if (convergence != nullptr) {

@@ -86,21 +86,27 @@ struct PlanSolution {
   V last_step;  // largest component, rad or m
 };
 
+// Of poses side by side those that have arrived stand still until all have, so that none depends on its neighbours.
 template <typename V>
-sms_status solve_plan(const PlanRods<V>& rods, PlanSolution<V>& solution, int& iterations) {
+sms_status solve_plan(const PlanRods<V>& rods, PlanSolution<V>& solution, Count<V>& iterations) {
   using std::abs;
-  for (iterations = 0; iterations < largest_iteration_count();) {
+  auto moving = V(0) < V(1);
+  iterations = Count<V>(0);
+  for (int n = 0; n < largest_iteration_count(); ++n) {
     const PlanError<V> error = plan_error(rods, solution.x_y_yaw);
-    solution.inverse_slope = inverse(error.slope);
-    const Vec3<V> step = solution.inverse_slope * error.excess;
-    const V largest = step.cwiseAbs().maxCoeff();
-    solution.x_y_yaw -= damping(largest) * step;
-    solution.last_step = largest;
-    ++iterations;
-    if (!(abs(solution.x_y_yaw(2)) <= largest_angle<V>())) {
+    const Mat3<V> inverse_slope = inverse(error.slope);
+    const Vec3<V> step = product(inverse_slope, error.excess);
+    const V largest = largest_magnitude(step);
+    const Vec3<V> stepped = solution.x_y_yaw - damping(largest) * step;
+    renew(moving, solution.x_y_yaw, stepped);
+    renew(moving, solution.inverse_slope, inverse_slope);
+    renew(moving, solution.last_step, largest);
+    iterations += select(moving, Count<V>(1), Count<V>(0));
+    if (!all(abs(solution.x_y_yaw(2)) <= largest_angle<V>())) {
       return SMS_OUT_OF_WORKSPACE;
     }
-    if (largest < close_step<V>()) {
+    moving = moving && !(solution.last_step < close_step<V>());
+    if (!any(moving)) {
       return SMS_OK;
     }
   }
@@ -109,10 +115,12 @@ sms_status solve_plan(const PlanRods<V>& rods, PlanSolution<V>& solution, int& i
 
 template <typename V>
 Vec3<V> last_step_of_plan(const PlanRods<V>& rods, const PlanRods<V>& /*the same*/, const PlanSolution<V>& solution) {
-  if (solution.last_step < negligible_step<V>()) {
+  const auto arrived = solution.last_step < negligible_step<V>();
+  if (all(arrived)) {
     return solution.x_y_yaw;
   }
-  return solution.x_y_yaw - solution.inverse_slope * plan_error(rods, solution.x_y_yaw).excess;
+  const Vec3<V> stepped = solution.x_y_yaw - product(solution.inverse_slope, plan_error(rods, solution.x_y_yaw).excess);
+  return select(arrived, solution.x_y_yaw, stepped);
 }
 
 // With derivatives: first in their values, then once more with the slope of the solution itself.
@@ -127,7 +135,7 @@ Vec3<S> last_step_of_plan(const PlanRods<S>& rods, const PlanRods<V>& rods_value
 // Largest error of a rod's length, m: the excess is half that of the squared length.
 template <typename V>
 V length_error(const Vec3<V>& excess, const Vec3<V>& panhard_length) {
-  return excess.cwiseQuotient(panhard_length).cwiseAbs().maxCoeff();
+  return largest_magnitude(Vec3<V>(excess.cwiseQuotient(panhard_length)));
 }
 
 // Roll and pitch of q = (roll, pitch, height).
@@ -155,19 +163,18 @@ sms_status complete_pose(const Geometry<S>& g, const Vec3<S>& q, const Tilt<S>& 
   if (!is_finite(q) || !is_finite(start)) {
     return SMS_NOT_A_NUMBER;
   }
-  if (abs(value_of(q(0))) > largest_angle<V>() || abs(value_of(q(1))) > largest_angle<V>()) {
+  if (any(abs(value_of(q(0))) > largest_angle<V>()) || any(abs(value_of(q(1))) > largest_angle<V>())) {
     return SMS_OUT_OF_WORKSPACE;
   }
   const PlanRods<S> rods = plan_rods(g, tilt.roll, tilt.pitch, q(2));
   const PlanRods<V> rods_value = value_of(rods);
   for (int i = 0; i < 3; ++i) {
-    if (!(rods_value.reach_squared[i] > V(0))) {
+    if (!all(rods_value.reach_squared[i] > V(0))) {
       return SMS_OUT_OF_WORKSPACE;
     }
   }
-  PlanSolution<V> solution;
-  solution.x_y_yaw << start.x, start.y, start.yaw;
-  int iterations = 0;
+  PlanSolution<V> solution = {Vec3<V>(start.x, start.y, start.yaw), Mat3<V>::Zero(), V(0)};
+  Count<V> iterations(0);
   const sms_status status = solve_plan(rods_value, solution, iterations);
   const Vec3<S> x_y_yaw = last_step_of_plan(rods, rods_value, solution);
   if (convergence != nullptr) {
@@ -195,7 +202,7 @@ sms_status inverse_kinematics(const Geometry<S>& g, const Vec3<S>& q, const Pose
     const Vec3<S> s = tilted(tilt.roll, tilt.pitch, g.platform[i]);
     const Vec3<S> leg(yaw.cosine * s(0) - yaw.sine * s(1) + pose.x - g.base[i](0),
                       yaw.sine * s(0) + yaw.cosine * s(1) + pose.y - g.base[i](1), s(2) - pose.height - g.base[i](2));
-    extension(i) = sqrt(leg.squaredNorm()) - g.actuator_length(i);
+    extension(i) = sqrt(dot(leg, leg)) - g.actuator_length(i);
   }
   return SMS_OK;
 }

@@ -92,8 +92,8 @@ struct Elimination {
 template <typename S>
 void eliminate_parasitic(const LinkSlopes<S>& slopes, Elimination<S>& e) {
   e.panhard_inverse = inverse(slopes.panhard_parasitic);
-  e.parasitic = -e.panhard_inverse * slopes.panhard_driven;
-  e.actuator = slopes.actuator_driven + slopes.actuator_parasitic * e.parasitic;
+  e.parasitic = -product(e.panhard_inverse, slopes.panhard_driven);
+  e.actuator = slopes.actuator_driven + product(slopes.actuator_parasitic, e.parasitic);
 }
 
 // The same per rate of the driven ones alone, when the parasitic ones follow.

@@ -12,16 +12,24 @@
 
 namespace sms {
 
+// Steps taken; of numbers side by side a count for each (lanes.hpp).
+template <typename V>
+struct CountOf {
+  using type = int;
+};
+template <typename V>
+using Count = typename CountOf<V>::type;
+
 // How an iteration ended; written for whoever asks, whatever the status.
 template <typename V>
 struct Convergence {
-  int iterations;  // Newton steps taken
-  V residual;      // m, largest error of a link's length; NaN when no pose was tried
+  Count<V> iterations;  // Newton steps taken
+  V residual;           // m, largest error of a link's length; NaN when no pose was tried
 };
 
 template <typename V>
-constexpr Convergence<V> not_begun() {
-  return {0, std::numeric_limits<V>::quiet_NaN()};
+Convergence<V> not_begun() {
+  return {Count<V>(0), V(std::numeric_limits<V>::quiet_NaN())};
 }
 
 constexpr int largest_iteration_count() { return 20; }
@@ -46,7 +54,8 @@ constexpr V negligible_step() {
 // Factor that brings the largest of a step's components down to largest_step.
 template <typename V>
 V damping(const V& largest_component) {
-  return largest_component > largest_step<V>() ? largest_step<V>() / largest_component : V(1);
+  const auto too_far = largest_component > largest_step<V>();
+  return any(too_far) ? select(too_far, largest_step<V>() / largest_component, V(1)) : V(1);
 }
 
 }  // namespace sms

@@ -36,16 +36,19 @@ inline SineCosine<S> sine_cosine(const S& angle) {
 // For plain numbers the power series, which within +-largest_angle() is exact to rounding: 9e-19 of the sine is left
 // out in double, 3e-10 in float. It needs no C library, so desk and controller compute the same bits. The terms are
 // paired (Estrin) to keep the chain of dependent operations short.
-inline SineCosine<double> sine_cosine(double angle) {
-  const double t = angle * angle, t2 = t * t, t4 = t2 * t2;
-  const double sine =
+template <typename D>
+inline SineCosine<D> double_series(const D& angle) {
+  const D t = angle * angle, t2 = t * t, t4 = t2 * t2;
+  const D sine =
       ((1.0 - t * (1.0 / 6.0)) + t2 * (1.0 / 120.0 - t * (1.0 / 5040.0))) +
       t4 * ((1.0 / 362880.0 - t * (1.0 / 39916800.0)) + t2 * (1.0 / 6227020800.0 - t * (1.0 / 1307674368000.0)));
-  const double cosine =
+  const D cosine =
       ((1.0 - t * 0.5) + t2 * (1.0 / 24.0 - t * (1.0 / 720.0))) +
       t4 * ((1.0 / 40320.0 - t * (1.0 / 3628800.0)) + t2 * (1.0 / 479001600.0 - t * (1.0 / 87178291200.0)));
   return {angle * sine, cosine};
 }
+
+inline SineCosine<double> sine_cosine(double angle) { return double_series(angle); }
 
 inline SineCosine<float> sine_cosine(float angle) {
   const float t = angle * angle, t2 = t * t;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -68,6 +69,54 @@ bool is_finite(const Vec3<S>& v) {
   return is_finite(v(0)) && is_finite(v(1)) && is_finite(v(2));
 }
 
+// A condition on a plain number is a bool, on several side by side (lanes.hpp) one for each. Templates for both ask all or
+// any of it, take one of two values by it, or renew what they keep where it holds.
+inline bool all(bool condition) { return condition; }
+inline bool any(bool condition) { return condition; }
+template <typename T>
+inline T select(bool condition, const T& one, const T& other) {
+  return condition ? one : other;
+}
+
+template <typename T>
+inline void renew(bool condition, T& kept, const T& fresh) {
+  if (condition) {
+    kept = fresh;
+  }
+}
+
+template <typename V>
+inline V larger(const V& a, const V& b) {
+  return select(a < b, b, a);
+}
+
+// Largest component, without its sign.
+template <typename V>
+inline V largest_magnitude(const Vec3<V>& v) {
+  using std::abs;
+  return larger(larger(abs(v(0)), abs(v(1))), abs(v(2)));
+}
+
+// Sums of three products in one order on every processor; Eigen's depends on how many numbers it multiplies at a time.
+template <typename S>
+inline S dot(const Vec3<S>& a, const Vec3<S>& b) {
+  return a(0) * b(0) + a(1) * b(1) + a(2) * b(2);
+}
+template <typename S>
+inline Vec3<S> product(const Mat3<S>& m, const Vec3<S>& v) {
+  return {m(0, 0) * v(0) + m(0, 1) * v(1) + m(0, 2) * v(2), m(1, 0) * v(0) + m(1, 1) * v(1) + m(1, 2) * v(2),
+          m(2, 0) * v(0) + m(2, 1) * v(1) + m(2, 2) * v(2)};
+}
+
+template <typename S>
+inline Mat3<S> product(const Mat3<S>& a, const Mat3<S>& b) {
+  Mat3<S> c;
+  for (int k = 0; k < 3; ++k) {
+    c.col(k) = product(a, Vec3<S>(b.col(k)));
+  }
+  return c;
+}
+
 template <typename S>
 inline Vec3<S> cross(const Vec3<S>& a, const Vec3<S>& b) {
   return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
@@ -79,7 +128,7 @@ template <typename S>
 inline Mat3<S> inverse(const Mat3<S>& m) {
   const Vec3<S> a = m.col(0), b = m.col(1), c = m.col(2);
   const Vec3<S> b_c = cross(b, c);
-  const S scale = S(1) / a.dot(b_c);
+  const S scale = S(1) / dot(a, b_c);
   Mat3<S> result;
   result.row(0) = scale * b_c;
   result.row(1) = scale * cross(c, a);
