@@ -122,8 +122,44 @@ def test_pairs_are_filled_up_with_what_was_not_fitted(monkeypatch: pytest.Monkey
         trial = Trial(cast(Any, name), cast(Any, fitted), p_value, np.zeros(1))
         trial.lower = lower
         trials.append(trial)
-    tried, _ = pairs._most_promising(trials, current, cast(Any, SimpleNamespace(healthy=None)))
-    assert [t.effect for t in tried] == ["d", "b", "c", "a"]
+    data = cast(Any, SimpleNamespace(healthy=None))
+    tried = pairs._most_promising(trials, current, data)
+    assert {"".join(sorted(cast(Any, t.effect) for t in pair[:2])) for pair in tried} == {
+        "bd",
+        "cd",
+        "ad",
+        "bc",
+        "ab",
+    }
+
+
+def test_what_is_hidden_beside_a_cause_is_tried_beside_it_although_another_leads(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of a valve's centre and a late position the best alone was heat, and the time offset was not tried."""
+    current = cast(Any, "model as it stands")
+    hidden = Step(100.0, current, np.zeros(1))
+
+    def beside(effects: list[Any], model: Any, *rest: Any) -> list[Step]:
+        nothing = Step(0.0, current, np.zeros(1))
+        return [hidden if (model, e) == ("centre", "clock") else nothing for e in effects]
+
+    monkeypatch.setattr(pairs, "best_steps", beside)
+    trials = []
+    for name, lower in (
+        ("heat", 5.0),
+        ("centre", 4.0),
+        ("leak", 3.0),
+        ("lag", 2.0),
+        ("tube", 1.0),
+        ("clock", -9.0),
+    ):
+        trial = Trial(cast(Any, name), cast(Any, name), 0.5, np.zeros(1))
+        trial.lower = lower
+        trials.append(trial)
+    tried = pairs._most_promising(trials, current, cast(Any, SimpleNamespace(healthy=None)))
+    assert ("centre", "clock", hidden) in [(a.effect, b.effect, step) for a, b, step in tried]
+    assert len(tried) <= 9
 
 
 def test_several_names_of_one_change_take_one_of_the_places_that_are_fitted() -> None:

@@ -82,10 +82,10 @@ TRIED_BY_STEP, TRIED_BY_SLOPE = 3, 3
 CANDIDATE_STEPS = 2
 """Jacobians in the fit of a candidate, for each parameter that its effect has; that of the one that is chosen goes on.
 Run time."""
-PAIRED = 5
-"""Effects of a round that are fitted two at a time where none stands alone: those that promise most. Run time."""
-PARTNERS = 2
-"""Of these, the ones that finite steps on top of the best promise most of. Run time."""
+LEADERS, PARTNERS = 3, 2
+"""Effects of a round that are fitted two at a time where none stands alone: those that lower most, with each other, and
+each with those that finite steps on top of it promise most of. Run time: nine pairs.
+"""
 PAIR_STEPS = 4
 """Jacobians in the fit of two effects: they have farther to go than one. Run time."""
 LEAST_SHARE = 0.5

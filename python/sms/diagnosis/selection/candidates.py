@@ -44,6 +44,8 @@ class Trial:
     p_value: float
     squared: Array
     """(rows,) squared residuals on the validate records."""
+    by_step: float = 0.0
+    """By how much the best finite step lowers the logarithms of what is left on an excerpt."""
     gain: float = 0.0
     gain_interval: tuple[float, float] = (0.0, 0.0)
     similarity: dict[str, float] = field(default_factory=dict)

@@ -8,7 +8,6 @@ takes, of what the other leaves alone, what a cause has to take, and both togeth
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import combinations
 
 import numpy as np
 
@@ -20,7 +19,7 @@ from sms.diagnosis.selection.candidates import Trial, leaders_settled
 from sms.diagnosis.selection.finite_steps import Step, best_steps, extended
 from sms.diagnosis.selection.judgement import alike, judge
 from sms.diagnosis.selection.outcome import Round
-from sms.diagnosis.thresholds import LEAST_SHARE, PAIR_STEPS, PAIRED, PARTNERS, TWINS
+from sms.diagnosis.thresholds import LEADERS, LEAST_SHARE, PAIR_STEPS, PARTNERS, TWINS
 from sms.estimation.least_squares import changed
 
 
@@ -36,29 +35,32 @@ def try_pairs(
 
     trials: of the round in which no effect stood alone.
     """
-    tried, beside_first = _most_promising(trials, current, data)
-    alone = [_alone(t, current, data) for t in tried]
-    effects = [t.effect for t in tried]
-    both: dict[frozenset[int], Fitted] = {}
-    for i, j in combinations(range(len(tried)), 2):
-        step = beside_first.get(effects[j]) if i == 0 else None
-        both[frozenset((i, j))] = _together(alone[i], alone[j], current, data, step)
+    tried = _most_promising(trials, current, data)
+    alone: dict[Effect, Fitted] = {}
+    for t in (t for pair in tried for t in pair[:2] if t.effect not in alone):
+        alone[t.effect] = _alone(t, current, data)
+    both = {
+        frozenset((one.effect, other.effect)): _together(
+            alone[one.effect], alone[other.effect], current, data, step
+        )
+        for one, other, step in tried
+    }
     if not both:
         return []
     both = leaders_settled(both, lambda f: _left_of(f, data), lambda one, other: False, data)
     best, pair = min(both.items(), key=lambda item: _left_of(item[1], data))
     if not _enough(current, pair, data):
         return []
-    first, second = sorted(best)
+    first, second = sorted(best, key=list(alone).index)
     rounds = []
     for member, other in ((first, second), (second, first)):
-        beside = {effects[k]: both[frozenset((k, other))] for k in range(len(tried)) if k != other}
-        candidates = _rivals(effects[member], beside, alone[other], data)
+        beside = {e: f for pair, f in both.items() if other in pair for e in pair - {other}}
+        candidates = _rivals(member, beside, alone[other], data)
         judge(candidates, alone[other], data, original, needed, rng, tried=len(both))
         accepted = [t for t in candidates if t.accepted]
-        if not any(t.effect is effects[member] for t in accepted):
+        if not any(t.effect is member for t in accepted):
             return []
-        accepted.sort(key=lambda t: t.effect is not effects[member])
+        accepted.sort(key=lambda t: t.effect is not member)
         rounds.append(Round(candidates, alike(accepted, alone[other], data)))
     return rounds
 
@@ -78,25 +80,30 @@ def _rivals(
 
 def _most_promising(
     trials: Sequence[Trial], current: Fitted, data: Data
-) -> tuple[list[Trial], dict[Effect, Step]]:
-    """Those that were fitted and lower most, those that finite steps on top of the best of them would lower it most
-    (beside a large cause another one may be hidden altogether), and the others by their score tests. With those steps.
+) -> list[tuple[Trial, Trial, Step | None]]:
+    """Pairs of what was fitted and lowers most, and of what promised most by finite steps (beside another cause its fit
+    may have gone astray); and of each of them with what lowers most on top of it by finite steps: beside a large cause
+    another one may be hidden altogether, and which of them is a cause is not known yet. Filled up with the others, by
+    how much they lower and by their score tests. A step begins on top of the first.
     """
     fitted = sorted((t for t in trials if t.fitted is not current), key=lambda t: -t.lower)
-    if not fitted:
-        return [], {}
-    others = [t for t in trials if t.effect is not fitted[0].effect]
-    steps = best_steps([t.effect for t in others], fitted[0].fitted, data, data.healthy is not None)
-    beside = {t.effect: s for t, s in zip(others, steps, strict=True) if s.gain > 0.0}
-    helping = [t for t in sorted(others, key=lambda t: -_gain(beside, t)) if t.effect in beside]
-    best, more = fitted[: PAIRED - PARTNERS], fitted[PAIRED - PARTNERS :]
+    fitted = sorted(fitted, key=lambda t: t is not max(fitted, key=lambda t: t.by_step))
+    leaders, more = fitted[:LEADERS], fitted[LEADERS:]
     by_score = sorted((t for t in trials if t.fitted is current), key=lambda t: t.p_value)
-    tried = [*best, *helping[:PARTNERS], *more, *by_score]
-    return list({id(t.effect): t for t in tried}.values())[:PAIRED], beside
-
-
-def _gain(beside: Mapping[Effect, Step], trial: Trial) -> float:
-    return beside[trial.effect].gain if trial.effect in beside else 0.0
+    led = [t.effect for t in leaders]
+    pairs: dict[frozenset[Effect], tuple[Trial, Trial, Step | None]] = {}
+    for leader in leaders:
+        others = {t.effect: t for t in trials if t is not leader}
+        steps = best_steps(list(others), leader.fitted, data, data.healthy is not None)
+        beside = {e: step for e, step in zip(others, steps, strict=True) if step.gain > 0.0}
+        helping = sorted(beside, key=lambda e: -beside[e].gain)
+        partners = dict.fromkeys([*helping, *(t.effect for t in (*more, *by_score))])
+        apart = [e for e in partners if e not in led][:PARTNERS]
+        for effect in (*(e for e in led if e is not leader.effect), *apart):
+            pair, step = frozenset((leader.effect, effect)), beside.get(effect)
+            if pair not in pairs or pairs[pair][2] is None:
+                pairs[pair] = leader, others[effect], step
+    return list(pairs.values())
 
 
 def _alone(trial: Trial, current: Fitted, data: Data) -> Fitted:
@@ -130,7 +137,7 @@ def _together(one: Fitted, other: Fitted, current: Fitted, data: Data, step: Ste
         changed(other.params, mine, np.array([one.params[n] for n in mine])),
     ]
     if step is not None:
-        starts.append(changed(one.params, its, np.array([step.params[n] for n in its])))
+        starts.append(step.params)
     runs = data.identify
     left = [_of_residual(residual_of(runs, start), data) for start in starts]
     start = starts[int(np.argmin(left))]

@@ -88,7 +88,7 @@ def try_effects(
     begin at what is declared then.
     """
     scores = score_effects(current, data, effects, rng)
-    first = _promising(current, data, effects, scores, nearby)
+    first, steps = _promising(current, data, effects, scores, nearby)
     current = looked_at_again(current, data)
     before = refitted(current, data).fit.residual ** 2
     trials = []
@@ -106,6 +106,7 @@ def try_effects(
             )
         else:
             trial.reason = "promises less than others of this round, by slope and by finite steps"
+        trial.by_step = steps[k].gain
         trials.append(trial)
     return current, trials
 
@@ -116,9 +117,10 @@ def _promising(
     effects: Sequence[Effect],
     scores: ScoreTests,
     nearby: Mapping[Effect, Fitted] | None,
-) -> dict[int, Fitted]:
+) -> tuple[dict[int, Fitted], list[Step]]:
     """By index the effects that are fitted: the best by finite steps and by slope, each in a direction of its own, then
-    what is alike to the best of them or acts in its equation, and what is the same as one of them to these signals.
+    what is alike to the best of them or acts in its equation, and what is the same as one of them to these signals. And
+    the finite steps of all.
     """
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
@@ -159,12 +161,7 @@ def _promising(
     same = cosines(raw_columns(current, data.identify, effects)) > SAME
     rivals += np.flatnonzero(same[list(first)].any(axis=0)).tolist()
     first |= {k: candidate(k) for k in dict.fromkeys(rivals) if k not in first}
-    return leaders_settled(
-        first,
-        left,
-        lambda one, other: bool(alike[one, other]),
-        data,
-    )
+    return leaders_settled(first, left, lambda one, other: bool(alike[one, other]), data), steps
 
 
 def _fitted(
