@@ -367,11 +367,28 @@ def test_what_a_cause_took_beside_another_that_is_gone_it_has_to_take_alone(
     )
     monkeypatch.setattr(backward_elimination, "channel_of_its_own", lambda effect, data: None)
     monkeypatch.setattr(backward_elimination, "settled", lambda fitted, left, data: False)
+    monkeypatch.setattr(backward_elimination, "with_systematic_error", lambda fitted, runs: fitted)
+    sure: set[str] = set()
+    monkeypatch.setattr(backward_elimination, "beyond_doubt", lambda e, *rest: e in sure)
+
+    def eliminated(name: str, healthy: str | None) -> tuple[list[list[Trial]], str]:
+        trial = Trial(cast(Any, name), cast(Any, None), 0.0, np.zeros(1))
+        data = cast(Any, SimpleNamespace(healthy=healthy, identify=None))
+        found, current = backward_elimination.backward_elimination(
+            [[trial]], cast(Any, ""), cast(Any, name), data
+        )
+        return found, cast(str, current)
+
+    # Beside records of the healthy machine a size that is beyond doubt is missed, although little more is left.
+    assert eliminated("clock", "well") == ([], "")
+    sure.add("clock")
+    assert eliminated("clock", "well")[1] == "clock"
+    assert eliminated("clock", None)[1] == ""
     for name, stands in (("clock", False), ("tube", True)):
         trial = Trial(cast(Any, name), cast(Any, None), 0.0, np.zeros(1))
         trial.accepted = True
         found, current = backward_elimination.backward_elimination(
-            [[trial]], cast(Any, ""), cast(Any, name), cast(Any, None)
+            [[trial]], cast(Any, ""), cast(Any, name), cast(Any, SimpleNamespace(healthy=None))
         )
         assert (found == [[trial]]) == stands
         assert cast(Any, current) == (name if stands else "")

@@ -95,7 +95,8 @@ NEARLY_ALL = 0.85
 by many effects, nearly all of it hardly by any."""
 SURE = 5.0
 """Standard errors, systematic errors counted, by which an effect is beyond what is declared of it that is named for
-taking most of what is left where that is within what is tolerated. Convention: five sigma.
+taking most of what is left where that is within what is tolerated; and a cause that is missed for its size, where
+records of the healthy machine told what is known. Convention: five sigma.
 """
 JOINT_INTERVAL = 0.95
 """Of a cause among several, systematic errors counted: the interval that must not hold what is declared. Convention: 95

@@ -12,12 +12,12 @@ from scipy.stats import chi2
 
 from sms import _core
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left
-from sms.diagnosis.adequacy.systematic_error import generalised
+from sms.diagnosis.adequacy.systematic_error import generalised, with_systematic_error
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import extended
-from sms.diagnosis.selection.judgement import channel_of_its_own, implausible
+from sms.diagnosis.selection.judgement import beyond_doubt, channel_of_its_own, implausible
 from sms.diagnosis.selection.outcome import Outcome
 from sms.diagnosis.thresholds import JOINT_INTERVAL, LEAST_SHARE
 
@@ -145,10 +145,16 @@ def _without_one(
     """Fewer causes and their model, where one has stood in for the others; None where each is missed.
 
     A cause is missed if without it the others leave at least as much more as a cause has to take, and more than what
-    ends the search: a pair's second one may have stood in for a first one that was not fitted to its end.
+    ends the search: a pair's second one may have stood in for a first one that was not fitted to its end. Where records
+    of the healthy machine told what is known, that may have to move so far in its place that its size is beyond doubt,
+    however little more is left: it is missed then too.
     """
     left = Left.by(final, data)
     for members in found:
+        if data.healthy is not None and beyond_doubt(
+            members[0].effect, with_systematic_error(final, data.identify), data
+        ):
+            continue
         kept = [m for m in found if m is not members]
         without = with_these(kept, baseline, final, data)
         other = Left.by(without, data)

@@ -101,7 +101,7 @@ def _accept_significant(fitted: Sequence[Trial], current: Fitted, data: Data) ->
     best = max(fitted, key=lambda t: t.lower, default=None)
     if best is None or best.accepted or not _takes_most(best, current, data):
         return
-    if not _is_sure(best, data):
+    if not beyond_doubt(best.effect, generalised(best.fitted, data), data):
         return
     for trial in fitted:
         if _takes_most(trial, current, data):
@@ -116,15 +116,12 @@ def _takes_most(trial: Trial, current: Fitted, data: Data) -> bool:
     return min(seen, gained) > 0.0 and (1.0 - seen) * (1.0 - gained) < (1.0 - LEAST_SHARE) ** 2
 
 
-def _is_sure(trial: Trial, data: Data) -> bool:
-    """Whether its size is beyond what is declared of it by five standard errors."""
-    name = trial.effect.parameters[0]
-    found, declared = generalised(trial.fitted, data), data.rig.declared(name)
-    moved, error = (
-        abs(found.params[name] - found.hypothesis.start[name]),
-        found.standard_error(name),
-    )
-    return moved - declared.uncertainty > SURE * error > 0.0
+def beyond_doubt(effect: Effect, found: Fitted, data: Data) -> bool:
+    """Whether its size is beyond what is declared of it by five of the standard errors that are stated."""
+    name = effect.parameters[0]
+    moved = abs(found.params[name] - found.hypothesis.start[name])
+    error = found.standard_error(name)
+    return moved - data.rig.declared(name).uncertainty > SURE * error > 0.0
 
 
 def channel_of_its_own(effect: Effect, data: Data) -> int | None:
