@@ -131,7 +131,9 @@ inline void advance(Pose<S>& pose, const PoseStep<S>& step, const S& factor) {
 
 template <typename V>
 bool within_largest_angle(const Pose<V>& pose) {
-  return all(largest_magnitude(Vec3<V>(pose.roll, pose.pitch, pose.yaw)) <= largest_angle<V>());
+  using std::abs;
+  return all(abs(pose.roll) <= largest_angle<V>() && abs(pose.pitch) <= largest_angle<V>() &&
+             abs(pose.yaw) <= largest_angle<V>());
 }
 
 // Newton's method up to the last step. The solver is that of the last step taken.

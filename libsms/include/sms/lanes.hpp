@@ -1,8 +1,8 @@
 // Four numbers side by side, as one scalar of the templates: four poses at a time, each with the bits that it has alone.
 //
 // One instruction of AVX2 does to four doubles what it does to one, and rounds as that does. A comparison gives an answer
-// for each; templates ask all() or any() of it and take values by select() (scalar.hpp). For GCC and clang, on the desk:
-// what includes this has to be compiled for the processor that runs it.
+// for each; templates ask all() or any() of it and take values by select() (scalar.hpp). For GCC and clang, on the desk;
+// compiled without AVX2 it is as right, and no faster than one number at a time.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,12 +15,14 @@
 
 namespace sms {
 
+// The arrays in the unions have numbers and conditions handed over in memory, so that code with AVX and without may call
+// each other.
 struct Lanes {
   static constexpr int count = 4;
   typedef double Numbers __attribute__((vector_size(32), aligned(8), may_alias));
   typedef long long Bits __attribute__((vector_size(32), aligned(8), may_alias));
 
-  // A condition on each. As with the numbers, the array has both handed over in memory, whatever calls whatever.
+  // A condition on each.
   struct Mask {
     union {
       long long of[4];  // all bits or none
