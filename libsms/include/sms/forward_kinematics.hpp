@@ -178,20 +178,29 @@ LinkExcess<V> evaluate_pose(const Geometry<V>& g, const Vec3<V>& length, const P
   return excess;
 }
 
+// Where the solver of a step is worked out: in place of the last one; beside it where some of several poses side by side
+// keep theirs (lanes.hpp).
+template <typename V>
+struct NextSolver {
+  PoseSolver<V>& solver;
+  explicit NextSolver(PoseSolver<V>& last) : solver(last) {}
+  void renew_where(bool /*moving*/, PoseSolver<V>& /*last*/) const {}
+};
+
 // Of poses side by side those that have arrived stand still until all have, so that none depends on its neighbours.
 template <typename V>
 sms_status solve_pose(const Geometry<V>& g, const Vec3<V>& length, PoseSolution<V>& solution, Count<V>& iterations) {
   auto moving = V(0) < V(1);
   iterations = Count<V>(0);
   for (int n = 0; n < largest_iteration_count(); ++n) {
-    PoseSolver<V> solver;
-    const LinkExcess<V> excess = evaluate_pose(g, length, solution.pose, solver);
-    const PoseStep<V> step = newton_step(solver, excess);
+    NextSolver<V> next(solution.solver);
+    const LinkExcess<V> excess = evaluate_pose(g, length, solution.pose, next.solver);
+    const PoseStep<V> step = newton_step(next.solver, excess);
     const V largest = larger(largest_magnitude(step.driven), largest_magnitude(step.parasitic));
     Pose<V> stepped = solution.pose;
     advance(stepped, step, damping(largest));
     renew(moving, solution.pose, stepped);
-    renew(moving, solution.solver, solver);
+    next.renew_where(moving, solution.solver);
     iterations += select(moving, Count<V>(1), Count<V>(0));
     if (!within_largest_angle(solution.pose)) {
       return SMS_OUT_OF_WORKSPACE;

@@ -133,14 +133,20 @@ inline void renew(const Lanes::Mask& where, Pose<Lanes>& kept, const Pose<Lanes>
   renew(where, kept.x, fresh.x);
   renew(where, kept.y, fresh.y);
 }
-inline void renew(const Lanes::Mask& where, PoseSolver<Lanes>& kept, const PoseSolver<Lanes>& fresh) {
-  renew(where, kept.panhard_inverse, fresh.panhard_inverse);
-  renew(where, kept.parasitic, fresh.parasitic);
-  renew(where, kept.actuator_parasitic, fresh.actuator_parasitic);
-  renew(where, kept.actuator_inverse, fresh.actuator_inverse);
-  renew(where, kept.yaw.sine, fresh.yaw.sine);
-  renew(where, kept.yaw.cosine, fresh.yaw.cosine);
-}
+
+template <>
+struct NextSolver<Lanes> {
+  PoseSolver<Lanes> solver;
+  explicit NextSolver(const PoseSolver<Lanes>& /*last*/) {}
+  void renew_where(const Lanes::Mask& moving, PoseSolver<Lanes>& last) const {
+    renew(moving, last.panhard_inverse, solver.panhard_inverse);
+    renew(moving, last.parasitic, solver.parasitic);
+    renew(moving, last.actuator_parasitic, solver.actuator_parasitic);
+    renew(moving, last.actuator_inverse, solver.actuator_inverse);
+    renew(moving, last.yaw.sine, solver.yaw.sine);
+    renew(moving, last.yaw.cosine, solver.yaw.cosine);
+  }
+};
 
 // The same machine in every lane.
 inline Geometry<Lanes> in_lanes(const Geometry<double>& g) {
