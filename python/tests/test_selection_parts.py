@@ -260,17 +260,20 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     assert fewer.found == [mass]
     outcome = Outcome(cast(Any, None), [], [leak])  # alone it took what there was, as sure as that
     assert without(3.9) is None
-    distance["leak"] = 0.9  # as far as errors alone go
-    fewer = without(3.9)
-    assert fewer is not None
-    assert not fewer.found
+    stated = cast(Any, None)
+    kept = backward_elimination.without_imagined(outcome, stated, baseline, data)
+    assert kept is outcome
+    distance["leak"] = 0.9  # as far as errors alone go on average
+    monkeypatch.setattr(backward_elimination, "sized", lambda fitted, data: fitted)
+    distance["gain"] = 9.0  # of a class another member is beyond doubt
+    of_two = Outcome(cast(Any, None), [], [[leak[0], found("gain")[0]]])
+    assert backward_elimination.without_imagined(of_two, stated, baseline, data) is of_two
+    leak[0].seen_share = leak[0].gain = 0.9  # nearly all
+    assert backward_elimination.without_imagined(outcome, stated, baseline, data) is outcome
+    leak[0].gain = 0.5
+    fewer = backward_elimination.without_imagined(outcome, stated, baseline, data)
+    assert (fewer.found, fewer.final) == ([], baseline)
     assert leak[0].reason == "in the final model its size is within its standard error"
-    monkeypatch.setattr(backward_elimination, "generalised", lambda fitted, data: fitted)
-    sure = found("gain")[0]  # of a class another member is beyond doubt
-    outcome = Outcome(cast(Any, None), [], [[leak[0], sure]])
-    assert without(3.9) is None
-    distance["gain"] = 0.9
-    assert without(3.9) is not None
 
 
 @pytest.mark.parametrize(

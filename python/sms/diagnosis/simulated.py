@@ -50,7 +50,7 @@ from sms.diagnosis.other_records import unseen
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.remainder import FedEquations, Hidden, Unexplained
 from sms.diagnosis.result import Cause, Diagnosis, NotTestable, ParameterValue, Verdict
-from sms.diagnosis.selection.backward_elimination import without_untenable
+from sms.diagnosis.selection.backward_elimination import without_imagined, without_untenable
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
@@ -146,7 +146,11 @@ def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted,
     ):
         outcome = fewer
         final = generalised(outcome.final, data) if outcome.found else outcome.final
-    return better_predicting(final, outcome.final, data) if outcome.found else final, outcome
+    if not outcome.found:
+        return final, outcome
+    stated = better_predicting(final, outcome.final, data)
+    outcome = without_imagined(outcome, stated, baseline, data)
+    return stated if outcome.found else outcome.final, outcome
 
 
 def complete(

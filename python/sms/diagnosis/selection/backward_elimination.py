@@ -12,14 +12,14 @@ from scipy.stats import chi2
 
 from sms import _core
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left
-from sms.diagnosis.adequacy.systematic_error import generalised, with_systematic_error
+from sms.diagnosis.adequacy.systematic_error import generalised, sized, with_systematic_error
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import extended
 from sms.diagnosis.selection.judgement import beyond_doubt, channel_of_its_own, implausible
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.thresholds import JOINT_INTERVAL, LEAST_SHARE
+from sms.diagnosis.thresholds import JOINT_INTERVAL, LEAST_SHARE, NEARLY_ALL
 
 
 def settled(fitted: Fitted, left: Left, data: Data) -> bool:
@@ -45,8 +45,8 @@ def without_untenable(
 ) -> Outcome | None:
     """Without the first cause whose value in the final model is within what is declared of it, or at the end of what is
     plausible: it is none, whatever it stood in for before the others came. Of several causes none stands whose interval
-    has no effect in it: what another leaves, whose law is known only roughly, has been given its name. Nor does a
-    single one that is no larger than what errors alone would make of nothing. None where each can stand.
+    has no effect in it: what another leaves, whose law is known only roughly, has been given its name. None where each
+    can stand.
     """
     h = baseline.hypothesis
     several = len(outcome.found) > 1
@@ -56,10 +56,8 @@ def without_untenable(
         reason = implausible(members[0].effect, final, data)
         if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
             reason = "within what is declared"
-        elif several and _may_be_nothing(members, final, h.start, data, _joint_interval):
+        elif several and _may_be_nothing(members, final, h.start, generalised, data):
             reason = "its interval of 95 % has no effect in it"
-        elif _may_be_nothing(members, final, h.start, data, float):  # the mean of chi-square
-            reason = "its size is within its standard error"
         if reason:
             for trial in members:
                 trial.accepted, trial.reason = False, f"in the final model {reason}"
@@ -72,27 +70,41 @@ def without_untenable(
     return None
 
 
+def without_imagined(outcome: Outcome, stated: Fitted, baseline: Fitted, data: Data) -> Outcome:
+    """Without a single cause that by the values that are stated is no larger than errors alone would make nothing appear
+    on average, and takes less than nearly all of the error: that is hardly imitated, however unsure the size.
+    """
+    if len(outcome.found) != 1:
+        return outcome
+    first = outcome.found[0][0]
+    if min(first.seen_share, first.gain) >= NEARLY_ALL or not _may_be_nothing(
+        outcome.found[0], stated, baseline.hypothesis.start, sized, data, on_average=True
+    ):
+        return outcome
+    for trial in outcome.found[0]:
+        trial.accepted = False
+        trial.reason = "in the final model its size is within its standard error"
+    return Outcome(baseline, outcome.rounds, [])
+
+
 def _may_be_nothing(
     members: Sequence[Trial],
     final: Fitted,
     declared: _core.Params,
+    values: Callable[[Fitted, Data], Fitted],
     data: Data,
-    bound: Callable[[int], float],
+    on_average: bool = False,
 ) -> bool:
-    """Whether errors alone would bring every member of a class where it is. One may be known as nearly as what it is
-    confounded with, a sensor's gain as its zero, where another is beyond doubt. bound: of the squared distance, by the
-    number of parameters.
+    """Whether errors alone would bring every member of a class where it is, in one case of twenty or on average. One
+    may be known as nearly as what it is confounded with, a sensor's gain as its zero, where another is beyond doubt.
+    values: the first of them has those of the final model, any other one these.
     """
     for trial in members:
-        at = final if trial is members[0] else generalised(trial.fitted, data)
+        at = final if trial is members[0] else values(trial.fitted, data)
         distance, count = _distance_from_nothing(trial.effect, at, declared)
-        if distance >= bound(count):
+        if distance >= (count if on_average else float(chi2.ppf(JOINT_INTERVAL, count))):
             return False
     return True
-
-
-def _joint_interval(count: int) -> float:
-    return float(chi2.ppf(JOINT_INTERVAL, count))
 
 
 def _distance_from_nothing(
