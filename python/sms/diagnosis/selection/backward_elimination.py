@@ -71,8 +71,8 @@ def without_untenable(
 
 
 def without_imagined(outcome: Outcome, stated: Fitted, baseline: Fitted, data: Data) -> Outcome:
-    """Without a single cause that by the values that are stated is no larger than errors alone would make nothing appear
-    on average, and takes less than nearly all of the error: that is hardly imitated, however unsure the size.
+    """Without a single cause that is no larger, as stated, than errors alone would make nothing appear on average, and
+    that takes less than nearly all of the error: that is hardly imitated, however unsure the size.
     """
     if len(outcome.found) != 1:
         return outcome
