@@ -260,20 +260,41 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     assert fewer.found == [mass]
     outcome = Outcome(cast(Any, None), [], [leak])  # alone it took what there was, as sure as that
     assert without(3.9) is None
-    stated = cast(Any, None)
-    kept = backward_elimination.without_imagined(outcome, stated, baseline, data)
-    assert kept is outcome
+
+
+def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_much(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    distance = {"leak": 3.0, "gain": 9.0}
+    monkeypatch.setattr(
+        backward_elimination,
+        "_distance_from_nothing",
+        lambda effect, *rest: (distance[effect.parameters[0]], 1),
+    )
+    monkeypatch.setattr(backward_elimination, "generalised", lambda fitted, data: fitted)
+    monkeypatch.setattr(Left, "by", lambda *model: None)
+    monkeypatch.setattr(backward_elimination, "small", lambda left, least: bool(least[0] > 1.0))
+    baseline = cast(Any, SimpleNamespace(hypothesis=SimpleNamespace(start={})))
+
+    def trial(name: str, share: float) -> Trial:
+        effect = cast(Any, SimpleNamespace(parameters=(name,)))
+        made = Trial(effect, cast(Any, None), 0.0, np.zeros(1))
+        made.seen_share = made.gain = share
+        return made
+
+    def stands(members: list[Trial], tolerated: float = 0.0) -> bool:
+        outcome = Outcome(cast(Any, None), [], [members])
+        left = backward_elimination.without_imagined(
+            outcome, cast(Any, None), baseline, cast(Any, None), np.full(1, tolerated)
+        )
+        return left is outcome
+
+    assert stands([trial("leak", 0.5)])
     distance["leak"] = 0.9  # as far as errors alone go on average
-    monkeypatch.setattr(backward_elimination, "sized", lambda fitted, data: fitted)
-    distance["gain"] = 9.0  # of a class another member is beyond doubt
-    of_two = Outcome(cast(Any, None), [], [[leak[0], found("gain")[0]]])
-    assert backward_elimination.without_imagined(of_two, stated, baseline, data) is of_two
-    leak[0].seen_share = leak[0].gain = 0.9  # nearly all
-    assert backward_elimination.without_imagined(outcome, stated, baseline, data) is outcome
-    leak[0].gain = 0.5
-    fewer = backward_elimination.without_imagined(outcome, stated, baseline, data)
-    assert (fewer.found, fewer.final) == ([], baseline)
-    assert leak[0].reason == "in the final model its size is within its standard error"
+    assert not stands([trial("leak", 0.5)])
+    assert stands([trial("leak", 0.5), trial("gain", 0.5)])  # of a class another is beyond doubt
+    assert stands([trial("leak", 0.9)])
+    assert not stands([trial("leak", 0.9)], tolerated=9.0)
 
 
 @pytest.mark.parametrize(

@@ -5,14 +5,15 @@ What a cause took beside another, or before another came, it need not take alone
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.stats import chi2
 
 from sms import _core
-from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left
-from sms.diagnosis.adequacy.systematic_error import generalised, sized, with_systematic_error
+from sms.arrays import Array
+from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left, small
+from sms.diagnosis.adequacy.systematic_error import generalised, with_systematic_error
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit
 from sms.diagnosis.selection.candidates import Trial
@@ -56,7 +57,7 @@ def without_untenable(
         reason = implausible(members[0].effect, final, data)
         if abs(final.params[name] - h.start[name]) <= h.known.get(name, declared):
             reason = "within what is declared"
-        elif several and _may_be_nothing(members, final, h.start, generalised, data):
+        elif several and _may_be_nothing(members, final, h.start, data):
             reason = "its interval of 95 % has no effect in it"
         if reason:
             for trial in members:
@@ -70,15 +71,20 @@ def without_untenable(
     return None
 
 
-def without_imagined(outcome: Outcome, stated: Fitted, baseline: Fitted, data: Data) -> Outcome:
-    """Without a single cause that is no larger, as stated, than errors alone would make nothing appear on average, and
-    that takes less than nearly all of the error: that is hardly imitated, however unsure the size.
+def without_imagined(
+    outcome: Outcome, final: Fitted, baseline: Fitted, data: Data, least: Array
+) -> Outcome:
+    """Without a single cause that is no larger than errors alone would make nothing appear on average; but
+    nearly all of an error beyond what is tolerated, least (channels,), is hardly imitated, however unsure the size.
     """
     if len(outcome.found) != 1:
         return outcome
     first = outcome.found[0][0]
-    if min(first.seen_share, first.gain) >= NEARLY_ALL or not _may_be_nothing(
-        outcome.found[0], stated, baseline.hypothesis.start, sized, data, on_average=True
+    takes_all = min(first.seen_share, first.gain) >= NEARLY_ALL
+    if takes_all and not small(Left.by(baseline, data), least):
+        return outcome
+    if not _may_be_nothing(
+        outcome.found[0], final, baseline.hypothesis.start, data, on_average=True
     ):
         return outcome
     for trial in outcome.found[0]:
@@ -91,16 +97,14 @@ def _may_be_nothing(
     members: Sequence[Trial],
     final: Fitted,
     declared: _core.Params,
-    values: Callable[[Fitted, Data], Fitted],
     data: Data,
     on_average: bool = False,
 ) -> bool:
     """Whether errors alone would bring every member of a class where it is, in one case of twenty or on average. One
     may be known as nearly as what it is confounded with, a sensor's gain as its zero, where another is beyond doubt.
-    values: the first of them has those of the final model, any other one these.
     """
     for trial in members:
-        at = final if trial is members[0] else values(trial.fitted, data)
+        at = final if trial is members[0] else generalised(trial.fitted, data)
         distance, count = _distance_from_nothing(trial.effect, at, declared)
         if distance >= (count if on_average else float(chi2.ppf(JOINT_INTERVAL, count))):
             return False
