@@ -284,7 +284,7 @@ def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_m
 
     def stands(members: list[Trial], tolerated: float = 0.0) -> bool:
         outcome = Outcome(cast(Any, None), [], [members])
-        left = backward_elimination.without_imagined(
+        left = backward_elimination.without_insignificant(
             outcome, cast(Any, None), baseline, cast(Any, None), np.full(1, tolerated)
         )
         return left is outcome

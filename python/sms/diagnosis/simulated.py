@@ -50,7 +50,7 @@ from sms.diagnosis.other_records import unseen
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.remainder import FedEquations, Hidden, Unexplained
 from sms.diagnosis.result import Cause, Diagnosis, NotTestable, ParameterValue, Verdict
-from sms.diagnosis.selection.backward_elimination import without_imagined, without_untenable
+from sms.diagnosis.selection.backward_elimination import without_insignificant, without_untenable
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
@@ -148,7 +148,7 @@ def _with_sizes(
     ):
         outcome = fewer
         final = generalised(outcome.final, data) if outcome.found else outcome.final
-    outcome = without_imagined(outcome, final, baseline, data, least)
+    outcome = without_insignificant(outcome, final, baseline, data, least)
     if not outcome.found:
         return outcome.final, outcome
     return better_predicting(final, outcome.final, data), outcome

@@ -71,11 +71,11 @@ def without_untenable(
     return None
 
 
-def without_imagined(
+def without_insignificant(
     outcome: Outcome, final: Fitted, baseline: Fitted, data: Data, least: Array
 ) -> Outcome:
-    """Without a single cause that is no larger than errors alone would make nothing appear on average; but
-    nearly all of an error beyond what is tolerated, least (channels,), is hardly imitated, however unsure the size.
+    """Without a single cause whose size is within its standard error. One stands all the same that takes nearly all of an
+    error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size.
     """
     if len(outcome.found) != 1:
         return outcome
