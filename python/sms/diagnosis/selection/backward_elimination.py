@@ -74,8 +74,8 @@ def without_untenable(
 def without_insignificant(
     outcome: Outcome, final: Fitted, baseline: Fitted, data: Data, least: Array
 ) -> Outcome:
-    """Without a single cause whose size is within its standard error. One stands all the same that takes nearly all of an
-    error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size.
+    """Without a single cause whose size is within its standard error. One stands all the same that takes nearly all of
+    an error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size.
     """
     if len(outcome.found) != 1:
         return outcome
