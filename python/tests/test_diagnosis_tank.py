@@ -9,9 +9,18 @@ import pytest
 from plant_support import fitted_baseline
 from sms import Params, _core, simulate_tank
 from sms.diagnosis import diagnose
+from sms.diagnosis.adequacy.systematic_error import ACCURACY
 from sms.diagnosis.effects.catalogue import effects_of
+from sms.diagnosis.localisation.signal_functions import (
+    hats,
+    of_input,
+    points,
+    signals_of,
+    through_plant,
+)
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.selection.stepwise import try_effects
+from sms.estimation.discrepancy import KNOTS
 from sms.io import write_record
 from sms.io.records import load_record
 from sms.io.rig import load_rig
@@ -94,11 +103,24 @@ def test_a_larger_tank_and_a_smaller_flow_are_one_class(tmp_path: Path) -> None:
     }
     assert found["dead_volume"] == pytest.approx(6.5e-3, rel=0.03)
     assert found["flow_conductance"] == pytest.approx(5.0 / 6.5 - 1.0, abs=0.03)
+    assert cause.parameters[0].standard_error < 0.1 * abs(cause.parameters[0].value)
     assert answer.hidden is not None
     assert answer.hidden.equation == "flow of the tank"
     assert answer.next_experiment is not None
     assert {"dead_volume tank", "flow_conductance"} <= set(answer.next_experiment.separates)
     assert "standard errors" in answer.next_experiment.purpose
+
+
+def test_a_flow_proportional_to_the_rate_is_another_volume(tmp_path: Path) -> None:
+    """To what the sensitivity to a function of a signal is accurate to: so none of it is the function's own."""
+    _, data = fitted_baseline(write_tank(tmp_path, 1, {"tank_initial_pressure": 2e5}))
+    runs, params = data.identify, data.rig.start()
+    _, volume = runs.problem.evaluate(params, ["tank_volume"])
+    rate = signals_of(runs)["pressure rate [Pa/s]"]
+    flow = of_input(runs.problem.hidden(params, KNOTS), 0)
+    functions = through_plant(runs, flow, hats(rate, points(rate)))
+    imitated = functions @ np.linalg.lstsq(functions, volume, rcond=None)[0]
+    assert np.linalg.norm(volume - imitated) < ACCURACY * np.linalg.norm(volume)
 
 
 @pytest.mark.parametrize(
