@@ -49,7 +49,7 @@ def record(
 ) -> None:
     """Record all frames of the bus into a log, until Ctrl-C or for a given time.
 
-    The log appears when it is finished, whole; Ctrl-C finishes it.
+    The log appears when it is finished, whole; Ctrl-C finishes it. Nothing is sent, so no key is needed.
     """
     from sms.io.can_files import LogWriter  # noqa: PLC0415
 
@@ -83,7 +83,10 @@ def replay(
         bool, typer.Option("--commands", help="Also send what desks sent.")
     ] = False,
 ) -> None:
-    """Send the frames of a log onto a bus again, in their time."""
+    """Send the frames of a log onto a bus again, in their time.
+
+    Commands are left out unless asked for. A rig with a key refuses them: what authenticates a command holds once.
+    """
     from sms.link.replay import replay as send  # noqa: PLC0415
 
     with open_address(interface, channel, bitrate) as bus, progress_bar() as bar:
