@@ -13,9 +13,8 @@ import json
 import os
 import time
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
@@ -27,6 +26,7 @@ from sms.errors import InputError
 from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
+from validation.trials.processes import processes
 from validation.trials.scoring import LARGEST_CLASS
 from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 
@@ -100,7 +100,7 @@ def foreign(
     console, answers = Console(), []
     cores = len(os.sched_getaffinity(0))
     os.environ.update(SMS_THREADS=str(max(cores // workers, 1)), OPENBLAS_NUM_THREADS="1")
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with processes(workers) as pool:
         jobs = [pool.submit(answer_set, folder, name, reference) for name in sets]
         for job in as_completed(jobs):
             answer = job.result()

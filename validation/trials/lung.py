@@ -15,9 +15,8 @@ import math
 import os
 import time
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -43,6 +42,7 @@ from validation.trials.lung_model import (
     model,
     read_tests,
 )
+from validation.trials.processes import processes
 from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 
 PARAMETERS = {"compliance": "compliance", "resistor_drop": "resistor"}
@@ -96,7 +96,7 @@ def lung(
         )
     console, answers = Console(), []
     os.environ.update(SMS_THREADS="1", OPENBLAS_NUM_THREADS="1")
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with processes(workers) as pool:
         calibrations = list(pool.map(calibrate, tests))
         console.print(calibration_table(calibrations))
         jobs = [pool.submit(answer, s, t, calibrations) for s, t in questions(tests, limit)]

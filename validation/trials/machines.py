@@ -10,10 +10,9 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +28,7 @@ from sms.io.json_files import json_line
 
 from validation.trials.answers import Answered, answered, key_of
 from validation.trials.follow_up import followed
+from validation.trials.processes import processes
 from validation.trials.scoring import Key, Outcome, confusion, goals, load, outcome_from
 from validation.twins import effects
 from validation.twins.draw import Trial, draw, draw_runs, drawable, open_truth
@@ -272,7 +272,7 @@ def _run(missing: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
         return
     # A process is one core: new ones read this when they load their linear algebra, forked ones have it loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with processes(workers) as pool:
         pending = {pool.submit(run_task, task): task for task in missing}
         for job in as_completed(pending):
             if (fault := job.exception()) is not None:
