@@ -139,7 +139,9 @@ def investigate(
 
 
 def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted, Outcome]:
-    """The final model by generalised least squares, and the causes whose sizes in it are beyond what is declared."""
+    """The final model by generalised least squares, and the causes whose sizes in it are beyond what is declared: by
+    either estimate of what no parameter explains.
+    """
     final = generalised(outcome.final, data) if outcome.found else outcome.final
     while (
         outcome.found and (fewer := without_untenable(outcome, final, baseline, data)) is not None
@@ -149,7 +151,9 @@ def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted,
     outcome = without_insignificant(outcome, final, baseline, data)
     if not outcome.found:
         return outcome.final, outcome
-    return better_predicting(final, outcome.final, data), outcome
+    stated = better_predicting(final, outcome.final, data)
+    outcome = without_insignificant(outcome, stated, baseline, data)
+    return stated if outcome.found else outcome.final, outcome
 
 
 def complete(
