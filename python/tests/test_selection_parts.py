@@ -262,7 +262,7 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     assert without(3.9) is None
 
 
-def test_a_single_cause_within_its_standard_error_is_none(
+def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_much(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     distance = {"leak": 3.0, "gain": 9.0}
@@ -272,23 +272,29 @@ def test_a_single_cause_within_its_standard_error_is_none(
         lambda effect, *rest: (distance[effect.parameters[0]], 1),
     )
     monkeypatch.setattr(backward_elimination, "generalised", lambda fitted, data: fitted)
+    monkeypatch.setattr(Left, "by", lambda *model: None)
+    monkeypatch.setattr(backward_elimination, "small", lambda left, least: bool(least[0] > 1.0))
     baseline = cast(Any, SimpleNamespace(hypothesis=SimpleNamespace(start={})))
 
-    def trial(name: str) -> Trial:
+    def trial(name: str, share: float) -> Trial:
         effect = cast(Any, SimpleNamespace(parameters=(name,)))
-        return Trial(effect, cast(Any, None), 0.0, np.zeros(1))
+        made = Trial(effect, cast(Any, None), 0.0, np.zeros(1))
+        made.seen_share = made.gain = share
+        return made
 
-    def stands(members: list[Trial]) -> bool:
+    def stands(members: list[Trial], tolerated: float = 0.0) -> bool:
         outcome = Outcome(cast(Any, None), [], [members])
         left = backward_elimination.without_insignificant(
-            outcome, cast(Any, None), baseline, cast(Any, None)
+            outcome, cast(Any, None), baseline, cast(Any, None), np.full(1, tolerated)
         )
         return left is outcome
 
-    assert stands([trial("leak")])
+    assert stands([trial("leak", 0.5)])
     distance["leak"] = 0.9  # as far as errors alone go on average
-    assert not stands([trial("leak")])
-    assert stands([trial("leak"), trial("gain")])  # of a class another is beyond doubt
+    assert not stands([trial("leak", 0.5)])
+    assert stands([trial("leak", 0.5), trial("gain", 0.5)])  # of a class another is beyond doubt
+    assert stands([trial("leak", 0.9)])
+    assert not stands([trial("leak", 0.9)], tolerated=9.0)
 
 
 @pytest.mark.parametrize(

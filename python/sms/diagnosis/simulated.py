@@ -122,7 +122,7 @@ def investigate(
     outcome = stepwise_selection(baseline, data, able, rng, progress, least)
     if outcome.found:
         progress("estimating sizes beside what no parameter explains", 0.8)
-    final, outcome = _with_sizes(outcome, baseline, data)
+    final, outcome = _with_sizes(outcome, baseline, data, least)
     adequate = enough(outcome.final)
     found = law = None
     if outcome.found:
@@ -138,7 +138,9 @@ def investigate(
     return Case(data, baseline, outcome, before, after, least, blind, able, verdict, found, law)
 
 
-def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted, Outcome]:
+def _with_sizes(
+    outcome: Outcome, baseline: Fitted, data: Data, least: Array
+) -> tuple[Fitted, Outcome]:
     """The final model by generalised least squares, and the causes whose sizes in it are beyond what is declared: by
     either estimate of what no parameter explains.
     """
@@ -148,11 +150,11 @@ def _with_sizes(outcome: Outcome, baseline: Fitted, data: Data) -> tuple[Fitted,
     ):
         outcome = fewer
         final = generalised(outcome.final, data) if outcome.found else outcome.final
-    outcome = without_insignificant(outcome, final, baseline, data)
+    outcome = without_insignificant(outcome, final, baseline, data, least)
     if not outcome.found:
         return outcome.final, outcome
     stated = better_predicting(final, outcome.final, data)
-    outcome = without_insignificant(outcome, stated, baseline, data)
+    outcome = without_insignificant(outcome, stated, baseline, data, least)
     return stated if outcome.found else outcome.final, outcome
 
 

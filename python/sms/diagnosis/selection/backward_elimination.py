@@ -11,7 +11,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from sms import _core
-from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left
+from sms.arrays import Array
+from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left, small
 from sms.diagnosis.adequacy.systematic_error import generalised, with_systematic_error
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit
@@ -19,7 +20,7 @@ from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import extended
 from sms.diagnosis.selection.judgement import beyond_doubt, channel_of_its_own, implausible
 from sms.diagnosis.selection.outcome import Outcome
-from sms.diagnosis.thresholds import JOINT_INTERVAL, LEAST_SHARE
+from sms.diagnosis.thresholds import JOINT_INTERVAL, LEAST_SHARE, NEARLY_ALL
 
 
 def settled(fitted: Fitted, left: Left, data: Data) -> bool:
@@ -70,9 +71,19 @@ def without_untenable(
     return None
 
 
-def without_insignificant(outcome: Outcome, final: Fitted, baseline: Fitted, data: Data) -> Outcome:
-    """Without a single cause whose size is within its standard error."""
-    if len(outcome.found) != 1 or not _may_be_nothing(
+def without_insignificant(
+    outcome: Outcome, final: Fitted, baseline: Fitted, data: Data, least: Array
+) -> Outcome:
+    """Without a single cause whose size is within its standard error. One stands all the same that takes nearly all of
+    an error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size.
+    """
+    if len(outcome.found) != 1:
+        return outcome
+    first = outcome.found[0][0]
+    takes_all = min(first.seen_share, first.gain) >= NEARLY_ALL
+    if takes_all and not small(Left.by(baseline, data), least):
+        return outcome
+    if not _may_be_nothing(
         outcome.found[0], final, baseline.hypothesis.start, data, on_average=True
     ):
         return outcome
