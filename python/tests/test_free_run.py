@@ -67,6 +67,29 @@ def test_it_is_the_error_of_one_simulation_from_beginning_to_end(
             )
 
 
+def test_clipped_readings_of_a_record_that_is_shorter_than_others_are_left_out(
+    tmp_path: Path,
+) -> None:
+    baseline, data = fitted_baseline(write_bench(tmp_path, 2, {}))
+    first, second = data.validate.motions
+    samples = len(first.time) - 40
+    signals = {name: values[:samples].copy() for name, values in first.signals.items()}
+    clipped = np.arange(samples) >= samples - 20
+    signals["chamber_pressure_lower"][clipped] += 1e5
+    shorter = replace(first, time=first.time[:samples], signals=signals)
+    said = replace(shorter, clipped={"chamber_pressure_lower": clipped})
+    plain, without = (
+        free_runs(
+            baseline,
+            baseline,
+            replace(data, validate=replace(data.validate, motions=(run, second))),
+        )[1]
+        for run in (shorter, said)
+    )
+    assert plain.signal == without.signal == "chamber_pressure_lower"
+    assert without.baseline_rms < 2.0 * NOISE["chamber_pressure_lower"] < plain.baseline_rms
+
+
 def test_over_a_whole_record_an_error_grows_and_the_right_model_has_the_noise_only(
     leaking_bench: Diagnosis,
 ) -> None:

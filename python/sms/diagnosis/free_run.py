@@ -52,7 +52,7 @@ def _rms(whole: Runs, record: int, channel: int, errors: Array) -> float:
         return float("nan")
     clipped = whole.motions[record].clipped.get(whole.channels[channel])
     if clipped is not None:
-        rows &= ~clipped[whole.sample]
+        rows[rows] = ~clipped[whole.sample[rows]]
     return float(np.sqrt(np.mean(errors[rows] ** 2))) if rows.any() else float("nan")
 
 
