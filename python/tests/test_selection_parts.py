@@ -262,6 +262,16 @@ def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     assert without(3.9) is None
 
 
+def test_records_that_one_effect_explains_do_not_contradict_each_other() -> None:
+    """Whether or not the effect is named in the end."""
+    trial = Trial(cast(Any, None), cast(Any, None), 0.0, np.zeros(1))
+    trial.seen_share, trial.gain = 0.85, 0.95
+    explained = Outcome(cast(Any, None), [Round([trial], [])], [])
+    assert explained.explained_by_one(0.8)
+    assert not explained.explained_by_one(0.9)
+    assert not Outcome(cast(Any, None), [], []).explained_by_one(0.0)
+
+
 def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_much(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

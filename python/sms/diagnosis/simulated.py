@@ -55,6 +55,7 @@ from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.outcome import Outcome
 from sms.diagnosis.selection.stepwise import stepwise_selection
+from sms.diagnosis.thresholds import EXPLAINS
 from sms.diagnosis.wording_simulated import (
     conclusion,
     nearest_in_words,
@@ -129,7 +130,7 @@ def investigate(
         law = inconstancy_of(outcome, data, adequate)
         outcome = replace(outcome, final=final, named=law is None)
     before, after = lack_of_fit(baseline, data), lack_of_fit(outcome.final, data)
-    if not adequate and not outcome.groups:
+    if not adequate and not outcome.groups and not outcome.explained_by_one(EXPLAINS):
         # An error of the tables would take a part of what one record has of its own; and records that contradict each
         # other do so whatever the machine was like before.
         plain = fit(declared.with_exact_maps, data.identify)

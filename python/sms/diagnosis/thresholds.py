@@ -149,7 +149,9 @@ LEAST_PLAY = 2.4e-3
 TRIED_BY_RECORD = 3
 """Effects that are fitted record by record: those that promise most. Run time."""
 EXPLAINS = 0.8
-"""Of the lack of fit: what one effect with a value of its own in each record has to take. Trials with bad input."""
+"""Of the lack of fit: what one effect with a value of its own in each record has to take, and none with one value for
+all. Trials with bad input.
+"""
 DIFFERS = 6.0
 """Standard errors between two records' values. Trials with bad input."""
 DIFFERS_BY = 0.4

@@ -31,3 +31,9 @@ class Outcome:
     def groups(self) -> list[list[Trial]]:
         """What was found, if it is named."""
         return self.found if self.named else []
+
+    def explained_by_one(self, share: float) -> bool:
+        """Whether an effect took as much as that of what the baseline leaves, with one value for all records, on those
+        that were fitted and on the others; named or not."""
+        first = self.rounds[0].trials if self.rounds else []
+        return any(min(t.seen_share, t.gain) >= share for t in first)
