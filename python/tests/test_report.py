@@ -243,7 +243,7 @@ def browse(tmp_path: Path, file: Path, *flags: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here; apt-get install chromium")
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here; ./dev test --full installs it")
 def test_a_browser_draws_with_the_library_beside_and_prints_few_pages(tmp_path: Path) -> None:
     with placed(Place.beside):
         write_page(tmp_path / "report.html", report_html(diagnosis("combination")))
@@ -259,7 +259,7 @@ def test_a_browser_draws_with_the_library_beside_and_prints_few_pages(tmp_path: 
     assert "could not be drawn" in alone
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here; apt-get install chromium")
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here; ./dev test --full installs it")
 def test_a_browser_draws_the_page_and_refuses_a_script_that_was_smuggled_in(tmp_path: Path) -> None:
     smuggled = "<script>document.title = 'it ran'</script><img src=x onerror=\"document.title = 'it ran'\">"
     html = report_html(diagnosis("combination"))
