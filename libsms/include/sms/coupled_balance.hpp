@@ -7,10 +7,11 @@
 // own acceleration (force_balance.hpp, F_S >= F_C), so the left-hand side is the gradient of a strictly convex function
 // of a: the solution is unique.
 //
-// Newton's method finds it in some four steps nearly always. Where it does not settle, the pistons are solved one after
-// the other for a while, each exactly, by the scalar balance, which on a convex function always comes nearer; a piston
-// that then stays between its two branches is held at a = 0, and Newton's method tries again. A last Newton step in S
-// carries exact derivatives.
+// Chebyshev's method, Newton's with the curvature of the friction beside its slope, finds it in two steps nearly always:
+// the powers and exponentials of a third are dear. Where it does not settle, the pistons are solved one after the other
+// for a while, each exactly, by the scalar balance, which on a convex function always comes nearer; a piston that then
+// stays between its two branches is held at a = 0, and Chebyshev's method tries again. A last Newton step in S carries
+// exact derivatives.
 #pragma once
 
 #include "sms/force_balance.hpp"
@@ -56,15 +57,27 @@ FrictionCurve<ValueOf<S>> value_of(const FrictionCurve<S>& c) {
           value_of(c.exponent)};
 }
 
-// Friction (value) and its slope over the acceleration.
+// Friction over the acceleration: value, slope, curvature; and how fast, relative to it, the curvature changes with the
+// acceleration's own share.
 template <typename S>
-Fall<S> friction_over(const FrictionCurve<S>& c, const S& acceleration) {
+struct FrictionNear {
+  S value;
+  S slope;
+  S curvature;
+  S steepness;
+};
+
+template <typename S>
+FrictionNear<S> friction_near(const FrictionCurve<S>& c, const S& acceleration) {
   const S ahead = c.direction * acceleration;
   if (!(ahead > S(0))) {
-    return {c.direction * c.branch.slowing, S(0)};
+    return {c.direction * c.branch.slowing, S(0), S(0), S(0)};
   }
-  const Fall<S> fall = fall_at(ahead, c.speed, c.width, c.exponent);
-  return {c.direction * (c.branch.starting + c.branch.rise * fall.value), c.branch.rise * fall.slope};
+  const S power = stribeck_power<S>(c.speed, ahead * c.width, c.exponent);
+  const Fall<S> fall = fall_of(power, c.exponent, ahead);
+  const S curvature = fall_curvature(fall, power, c.exponent, ahead);
+  return {c.direction * (c.branch.starting + c.branch.rise * fall.value), c.branch.rise * fall.slope,
+          c.direction * c.branch.rise * curvature, c.exponent * (power + S(1)) + S(2)};
 }
 
 // a of mass a + friction(a) = force for one piston.
@@ -79,24 +92,34 @@ V solve_one(const FrictionCurve<V>& c, const V& mass, const V& force) {
                        : V(0);
 }
 
-// One Newton step, a vector to be added; a piston that is `held` keeps its a = 0.
+// What is missing of the balance at a, and what a step makes of it; a piston that is `held` keeps its a = 0.
 template <typename S>
-Vec3<S> newton_step(const FrictionCurve<S> (&curve)[3], const bool (&held)[3], const Mat3<S>& mass,
-                    const Vec3<S>& drive, const Vec3<S>& a) {
-  Mat3<S> slope = mass;
-  Vec3<S> off = drive - mass * a;
+struct NearBalance {
+  Mat3<S> slope;
+  Vec3<S> missing;
+  FrictionNear<S> friction[3];
+};
+
+template <typename S>
+NearBalance<S> near_balance(const FrictionCurve<S> (&curve)[3], const bool (&held)[3], const Mat3<S>& mass,
+                            const Vec3<S>& drive, const Vec3<S>& a) {
+  NearBalance<S> near;
+  near.slope = mass;
+  near.missing = drive - mass * a;
   for (int i = 0; i < 3; ++i) {
+    FrictionNear<S>& friction = near.friction[i];
     if (held[i]) {
-      slope.row(i).setZero();
-      slope(i, i) = S(1);
-      off(i) = S(0);
+      near.slope.row(i).setZero();
+      near.slope(i, i) = S(1);
+      near.missing(i) = S(0);
+      friction = {S(0), S(0), S(0), S(0)};
       continue;
     }
-    const Fall<S> friction = friction_over(curve[i], a(i));
-    slope(i, i) += friction.slope;
-    off(i) -= friction.value;
+    friction = friction_near(curve[i], a(i));
+    near.slope(i, i) += friction.slope;
+    near.missing(i) -= friction.value;
   }
-  return solution<S>(slope, off);
+  return near;
 }
 
 template <typename V>
@@ -104,19 +127,51 @@ V largest(const Vec3<V>& v) {
   return v.cwiseAbs().maxCoeff();
 }
 
-// Newton's method from a; false, and a as it was, when it does not settle, or a held piston would have to move. It has
-// settled when a step is so small that its square, which is what is left, is near rounding.
+// A step, and about what the next would be.
+template <typename V>
+struct ChebyshevStep {
+  Vec3<V> step;
+  V left;
+};
+
+// Without the curvature's part where a piston changes its branch, or goes so far that its friction changes its shape.
+template <typename V>
+ChebyshevStep<V> chebyshev_step(const FrictionCurve<V> (&curve)[3], const NearBalance<V>& near, const Vec3<V>& a) {
+  using std::abs;
+  const Mat3<V> per_force = inverse(near.slope);
+  const Vec3<V> straight = per_force * near.missing;
+  const auto bending = [&near, &straight](int i) -> V {
+    return V(-0.5) * near.friction[i].curvature * straight(i) * straight(i);
+  };
+  const Vec3<V> correction = per_force * Vec3<V>(bending(0), bending(1), bending(2));
+  const V size = largest(straight), bent = largest(correction);
+  const Vec3<V> step = straight + correction;
+  bool same_branches = true;
+  V steepest(0);
+  for (int i = 0; i < 3; ++i) {
+    const V ahead = curve[i].direction * a(i), next = curve[i].direction * (a(i) + step(i));
+    same_branches = same_branches && (ahead > V(0)) == (next > V(0));
+    if (ahead > V(0)) {
+      steepest = larger(steepest, V(abs(straight(i)) * near.friction[i].steepness / ahead));
+    }
+  }
+  if (!same_branches || !(bent < V(0.25) * size) || !(steepest < V(0.5))) {
+    return {straight, size};
+  }
+  return {step, bent * (V(2) * bent / size + steepest)};
+}
+
+// Chebyshev's method from a; false, and a as it was, when it does not settle, or a held piston would have to move.
 template <typename V>
 bool solve_together(const FrictionCurve<V> (&curve)[3], const bool (&held)[3], const Mat3<V>& mass,
                     const Vec3<V>& drive, Vec3<V>& a) {
-  using std::sqrt;
-  const V small = V(4) * sqrt(std::numeric_limits<V>::epsilon());
+  constexpr V kSmall = V(1000) * std::numeric_limits<V>::epsilon();
   Vec3<V> next = a;
   bool settled = false;
   for (int i = 0; i < 8 && !settled; ++i) {
-    const Vec3<V> step = newton_step(curve, held, mass, drive, next);
-    next += step;
-    settled = largest(step) <= small * largest(next);
+    const ChebyshevStep<V> step = chebyshev_step(curve, near_balance(curve, held, mass, drive, next), next);
+    next += step.step;
+    settled = step.left <= kSmall * largest(next);
   }
   for (int i = 0; i < 3; ++i) {
     const V left = curve[i].direction * (drive(i) - mass.row(i).dot(next));
@@ -173,7 +228,8 @@ sms_status coupled_accelerations(const Params<S> (&p)[3], FrictionLaw law, const
   if (std::is_same<S, V>::value) {
     acceleration = start;
   } else {
-    acceleration = start + detail::newton_step(curve, held, mass, drive, start);
+    const detail::NearBalance<S> near = detail::near_balance(curve, held, mass, drive, start);
+    acceleration = start + solution(near.slope, near.missing);
   }
   return SMS_OK;
 }

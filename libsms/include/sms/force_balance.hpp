@@ -93,8 +93,14 @@ Fall<S> fall_at(const S& acceleration, const S& speed, const S& width, const S& 
   return fall_of<S>(stribeck_power<S>(speed, acceleration * width, exponent), exponent, acceleration);
 }
 
-// a > 0 with  mass a + rise fall(a) = excess,  for plain numbers and excess > 0: by steps of Halley's method, whose
-// second derivative costs nothing beside the first, within an interval that holds the root.
+// And its second derivative by a, which costs nothing beside the first.
+template <typename S>
+S fall_curvature(const Fall<S>& fall, const S& power, const S& exponent, const S& acceleration) {
+  return fall.slope * (exponent * (power - S(1)) - S(1)) / acceleration;
+}
+
+// a > 0 with  mass a + rise fall(a) = excess,  for plain numbers and excess > 0: by steps of Halley's method
+// within an interval that holds the root.
 template <typename V>
 V solve_speeding_up(const V& mass, const V& rise, const V& excess, const V& speed, const V& width, const V& exponent) {
   using std::abs;
@@ -109,7 +115,7 @@ V solve_speeding_up(const V& mass, const V& rise, const V& excess, const V& spee
     const Fall<V> fall = fall_of<V>(power, exponent, a);
     const V off = mass * a + rise * fall.value - excess;
     const V slope = mass + rise * fall.slope;
-    const V curvature = rise * fall.slope * (exponent * (power - V(1)) - V(1)) / a;
+    const V curvature = rise * fall_curvature<V>(fall, power, exponent, a);
     (off > V(0) ? high : low) = a;
     V next = a - off / (slope - V(0.5) * off * curvature / slope);
     const V step = abs(next - a), share = step / a;
