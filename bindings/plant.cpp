@@ -198,7 +198,7 @@ class Simulation {
     }
     load_.assign(load, load + load_width<Plant>());
     set_load(load, run_.system.input);
-    return run_.system(run_.run.state, run_.run.rate);
+    return renew_rate(run_.system, run_.run);
   }
 
   Params params_;

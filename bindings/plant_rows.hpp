@@ -113,8 +113,7 @@ inline void write_terms(const sms::Simulation<sms::Platform<double>>& s, double*
     *row++ = t.acceleration(i);
   }
   for (int i = 0; i < 3; ++i) {
-    for (const double value :
-         {t.extension(i), t.dynamics.motion.extension_rate(i), t.friction(i), s.measured[i], s.command[i]}) {
+    for (const double value : {t.extension(i), t.velocity(i), t.friction(i), s.measured[i], s.command[i]}) {
       *row++ = value;
     }
   }

@@ -100,7 +100,7 @@ class VirtualRig {
     return {e(0), e(1), e(2)};
   }
   std::array<double, 3> extension_rate() const {
-    const auto& v = rig_.terms().dynamics.motion.extension_rate;
+    const auto& v = rig_.terms().velocity;
     return {v(0), v(1), v(2)};
   }
   std::array<double, 3> pressures(bool lower) const {

@@ -194,7 +194,7 @@ class PlantModel : public Model {
     if (now_->sample == 0 || load != load_) {  // what was known of the next step is no longer true
       load_ = load;
       Of::set_load(load, now_->system.input);
-      status = now_->system(now_->run.state, now_->run.rate);
+      status = sms::renew_rate(now_->system, now_->run);
     }
     double setpoint[Plant::legs];
     const double no_noise[Plant::legs] = {};

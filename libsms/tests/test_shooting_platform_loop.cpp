@@ -67,7 +67,7 @@ Simulated simulated(const Machine& p) {
     }
     REQUIRE(sms::take_sample(p, setpoint, no_noise, s) == SMS_OK);
     if (k % kPeriodsASample == 0) {
-      const Eigen::Vector3d speed = s.system.terms.dynamics.motion.extension_rate;
+      const Eigen::Vector3d speed = s.system.terms.velocity;
       for (int i = 0; i < 3; ++i) {
         const std::size_t leg = static_cast<std::size_t>(i);
         out.record.setpoint[leg][row] = setpoint[i];

@@ -23,8 +23,12 @@
 //
 // The plant is wrapped in a System:
 //
-//   sms_status operator()(const State&, State& rate)    the derivative, autonomous: input held
-//   void switches(const State&, S (&)[kSwitches])       called after the derivative at that state
+//   using Slow                                                 its slow terms (slow_terms.hpp), or NoSlowTerms
+//   sms_status operator()(const State&, Slow&, State& rate)    the derivative, autonomous: input held
+//   sms_status near(const State&, const Slow&, State& rate)    the same with slow terms as they are given; where there are any
+//   void switches(const State&, S (&)[kSwitches])              called after either at that state
+//
+// k5 has slow terms of its own and k4 those of the polynomial, so that the error sees what it misses.
 #pragma once
 
 #include <cmath>
@@ -32,6 +36,7 @@
 
 #include "sms/integrate.hpp"
 #include "sms/limit.hpp"
+#include "sms/slow_terms.hpp"
 
 namespace sms {
 
@@ -52,7 +57,7 @@ StepControl<State> step_control(const State& scale, const typename State::Scalar
 }
 
 // Where a run is.
-template <typename State>
+template <typename State, typename Slow = NoSlowTerms>
 struct Run {
   using S = typename State::Scalar;
   S time;
@@ -63,14 +68,25 @@ struct Run {
   S began;       // the last accepted step went from here to `time`
   State before;  // state and rate at that beginning
   State rate_before;
+  SlowPath<Slow> slow;  // up to `time`
   unsigned long evaluations;
   unsigned long steps;
   unsigned long rejected;
 };
 
+// The rate where the run is, when the input has jumped.
+template <typename State, typename System, typename Slow = typename System::Slow>
+sms_status renew_rate(System& f, Run<State, Slow>& run) {
+  Slow slow;
+  const sms_status status = f(run.state, slow, run.rate);
+  run.slow.count = 0;
+  add_place(run.slow, slow, run.time);
+  return status;
+}
+
 // A run that begins at a state; its first step is cautious.
-template <typename State, typename System>
-sms_status begin_run(System& f, const typename State::Scalar& time, const State& state, Run<State>& run) {
+template <typename State, typename System, typename Slow = typename System::Slow>
+sms_status begin_run(System& f, const typename State::Scalar& time, const State& state, Run<State, Slow>& run) {
   using S = typename State::Scalar;
   run.time = time;
   run.began = time;
@@ -81,22 +97,64 @@ sms_status begin_run(System& f, const typename State::Scalar& time, const State&
   run.evaluations = 1;
   run.steps = 0;
   run.rejected = 0;
-  const sms_status status = f(run.state, run.rate);
+  const sms_status status = renew_rate(f, run);
   run.rate_before = run.rate;
   return status;
 }
 
+// The rate in the stages of a step until `end`, s.
+template <typename System, typename Slow>
+class Stages {
+ public:
+  template <typename S>
+  Stages(System& f, const SlowPath<Slow>& path, const S& end) : f_(f), path_(path), near_(reaches(path, end)) {}
+  template <typename S>
+  void go_to(const S& time) {
+    if (near_) {
+      slow_at(path_, time, slow_);
+    }
+  }
+  template <typename State>
+  sms_status operator()(const State& state, State& rate) {
+    return near_ ? f_.near(state, slow_, rate) : f_(state, slow_, rate);
+  }
+
+ private:
+  System& f_;
+  const SlowPath<Slow>& path_;
+  const bool near_;
+  Slow slow_;
+};
+
+template <typename System>
+class Stages<System, NoSlowTerms> {
+ public:
+  template <typename S>
+  Stages(System& f, const SlowPath<NoSlowTerms>&, const S&) : f_(f) {}
+  template <typename S>
+  void go_to(const S&) {}
+  template <typename State>
+  sms_status operator()(const State& state, State& rate) {
+    NoSlowTerms none;
+    return f_(state, none, rate);
+  }
+
+ private:
+  System& f_;
+};
+
 // One attempt: where a step of size h leads, and by how much its tolerance is missed.
-template <typename State>
+template <typename State, typename Slow>
 struct Attempt {
   State end;
   State rate;  // there
+  Slow slow;
   typename State::Scalar error;
 };
 
-template <typename State, typename System>
-sms_status attempt_step(System& f, const StepControl<State>& control, const Run<State>& run,
-                        const typename State::Scalar& h, Attempt<State>& a) {
+template <typename State, typename System, typename Slow = typename System::Slow>
+sms_status attempt_step(System& f, const StepControl<State>& control, const Run<State, Slow>& run,
+                        const typename State::Scalar& h, Attempt<State, Slow>& a) {
   using S = typename State::Scalar;
   State k2, k3, k4;
   const auto x = vector_of(run.state);
@@ -105,20 +163,23 @@ sms_status attempt_step(System& f, const StepControl<State>& control, const Run<
   const State& at = a.end;
   const S half = S(0.5) * h;
   sms_status status;
+  Stages<System, Slow> rate_of(f, run.slow, run.time + h);
+  rate_of.go_to(run.time + half);
   end = x + half * k1;
-  if ((status = f(at, k2)) != SMS_OK) {
+  if ((status = rate_of(at, k2)) != SMS_OK) {
     return status;
   }
   end = x + half * vector_of(k2);
-  if ((status = f(at, k3)) != SMS_OK) {
+  if ((status = rate_of(at, k3)) != SMS_OK) {
     return status;
   }
+  rate_of.go_to(run.time + h);
   end = x + h * vector_of(k3);
-  if ((status = f(at, k4)) != SMS_OK) {
+  if ((status = rate_of(at, k4)) != SMS_OK) {
     return status;
   }
   end = x + (h / S(6)) * (k1 + S(2) * (vector_of(k2) + vector_of(k3)) + vector_of(k4));
-  if ((status = f(at, a.rate)) != SMS_OK) {
+  if ((status = f(at, a.slow, a.rate)) != SMS_OK) {
     return status;
   }
   const auto size = end.cwiseAbs().cwiseMax(vector_of(control.scale));
@@ -128,8 +189,8 @@ sms_status attempt_step(System& f, const StepControl<State>& control, const Run<
 }
 
 // The state at a time within the last step.
-template <typename State>
-State state_at(const Run<State>& run, const typename State::Scalar& time) {
+template <typename State, typename Slow>
+State state_at(const Run<State, Slow>& run, const typename State::Scalar& time) {
   using S = typename State::Scalar;
   const S h = run.time - run.began;
   const S part = (time - run.began) / h, rest = S(1) - part;
@@ -172,8 +233,9 @@ S shrinking(const S& error) {
 }
 
 // Chooses the next step after one of size h. What was left before the end, `last`, may be short and says nothing.
-template <typename State>
-void choose_next(const typename State::Scalar& h, bool last, const typename State::Scalar& error, Run<State>& run) {
+template <typename State, typename Slow>
+void choose_next(const typename State::Scalar& h, bool last, const typename State::Scalar& error,
+                 Run<State, Slow>& run) {
   using S = typename State::Scalar;
   const S seen = error > S(1e-4) ? error : S(1e-4);
   const S wanted = h * growth<S>(seen, run.last_error);
@@ -183,26 +245,27 @@ void choose_next(const typename State::Scalar& h, bool last, const typename Stat
   }
 }
 
-template <typename State>
-void accept_step(const Attempt<State>& a, const typename State::Scalar& end, Run<State>& run) {
+template <typename State, typename Slow>
+void accept_step(const Attempt<State, Slow>& a, const typename State::Scalar& end, Run<State, Slow>& run) {
   run.began = run.time;
   run.before = run.state;
   run.rate_before = run.rate;
   run.time = end;
   run.state = a.end;
   run.rate = a.rate;
+  add_place(run.slow, a.slow, end);
   ++run.steps;
 }
 
 // One accepted step that does not pass `end`. Where it would have to be smaller than control.smallest: what the
 // derivative said ahead, else SMS_NOT_CONVERGED; the run stands where it was.
-template <typename State, typename System>
+template <typename State, typename System, typename Slow = typename System::Slow>
 sms_status adaptive_step(System& f, const StepControl<State>& control, const typename State::Scalar& end,
-                         Run<State>& run) {
+                         Run<State, Slow>& run) {
   using S = typename State::Scalar;
   S before[System::switch_count], after[System::switch_count];
   f.switches(run.state, before);
-  Attempt<State> a;
+  Attempt<State, Slow> a;
   S h = run.next < control.largest ? run.next : control.largest;
   bool shortened = false;  // by a switch: the size says nothing about the next
   sms_status ahead = SMS_NOT_CONVERGED;
@@ -232,7 +295,7 @@ sms_status adaptive_step(System& f, const StepControl<State>& control, const typ
       }
       choose_next(h, last, a.error, run);
     }
-    accept_step<State>(a, last ? end : run.time + h, run);
+    accept_step(a, last ? end : S(run.time + h), run);
     return SMS_OK;
   }
 }

@@ -163,13 +163,13 @@ class PlatformSensors {
     visit("pitch", 0, pitch_, S(state.q(1)), S(state.rate(1)));
   }
   S extension_reading(const PlatformState<S>&, const PlatformTerms<S>& t, int leg) const {
-    return leg_[leg].extension_reading(t.dynamics.motion.extension_rate(leg));
+    return leg_[leg].extension_reading(t.velocity(leg));
   }
 
  private:
   static LegSeen<S> seen(const PlatformState<S>& state, const PlatformState<S>& rate, const PlatformTerms<S>& t,
                          int i) {
-    return {t.extension(i), t.dynamics.motion.extension_rate(i), state.actuator[i], rate.actuator[i]};
+    return {t.extension(i), t.velocity(i), state.actuator[i], rate.actuator[i]};
   }
   ActuatorSensors<S> leg_[3];
   Sensor<S> supply_, roll_, pitch_;

@@ -10,6 +10,9 @@
 //   (J^-T M J^-1) e'' + F_f(e', e'') = F + J^-T (Q - h - g) + (J^-T M J^-1) J' q'            coupled_balance.hpp
 //
 // Each actuator has parameters of its own; the mechanism was made from those of the first.
+//
+// What the mechanism brings of this depends on pose and rate alone, and hardly changes in a millisecond. It stands apart,
+// for an integrator that evaluates it once a step (slow_terms.hpp).
 #pragma once
 
 #include "sms/actuator.hpp"
@@ -32,13 +35,28 @@ struct PlatformInput {
   Wrench<S> wrench;
 };
 
+// The mechanism as its pistons have it, near a pose and a rate.
+template <typename S>
+struct MechanismAtPistons {
+  using Scalar = S;
+  Vec3<S> q;          // the pose
+  Vec3<S> extension;  // there, m
+  Mat3<S> slope;      // J
+  Mat3<S> to_q;       // J^-1
+  Mat3<S> mass;       // J^-T M J^-1, kg
+  Vec3<S> bias;       // J' q', m/s^2
+  Vec3<S> load;       // J^-T (Q - h - g) + J^-T M J^-1 J' q', N
+};
+
 // The workspace of derivative(): it also remembers the last pose and the last accelerations, where the next searches
 // begin.
 template <typename S>
 struct PlatformTerms {
   DynamicsTerms<S> dynamics;
+  MechanismAtPistons<S> at_pistons;
   ActuatorTerms<S> actuator[3];
   Vec3<S> extension;
+  Vec3<S> velocity;      // e'
   Vec3<S> friction;      // F_f, N
   Vec3<S> acceleration;  // q''
   Vec3<S> along;         // e'' of the pistons by the law of their friction; the next balance begins there
@@ -98,20 +116,34 @@ Vec3<S> panhard_load(const Params<S>& p, const Motion<S>& m) {
   return load;
 }
 
+template <typename S>
+MechanismAtPistons<S> mechanism_at_pistons(const Platform<S>& platform, const Wrench<S>& wrench,
+                                           const DynamicsTerms<S>& d) {
+  const Motion<S>& motion = d.motion;
+  MechanismAtPistons<S> m;
+  m.q << d.pose.roll, d.pose.pitch, d.pose.height;
+  for (int i = 0; i < 3; ++i) {
+    m.extension(i) = motion.length[i] - platform.mechanism.geometry.actuator_length(i);
+  }
+  m.slope = motion.extension_slope;
+  m.to_q = inverse(m.slope);
+  m.mass = symmetric_product<S>(m.to_q, d.mass_matrix * m.to_q);
+  m.bias = motion.extension_bias;
+  const Vec3<S> other = platform_load(d, wrench) + panhard_load(platform.params[0], motion) - d.inertial - d.weight;
+  m.load = m.to_q.transpose() * other + m.mass * m.bias;
+  return m;
+}
+
 // q'' and the pistons' friction, in the coordinates of the pistons.
 template <typename S>
-sms_status balance_platform(const Platform<S>& platform, const PlatformState<S>& state, const Vec3<S>& force,
-                            const Vec3<S>& other, PlatformTerms<S>& t, PlatformState<S>& rate) {
-  const Motion<S>& m = t.dynamics.motion;
-  const Mat3<S> to_pistons = inverse(m.extension_slope);
-  const Mat3<S> transposed = to_pistons.transpose();
-  const Mat3<S> mass = symmetric_product<S>(to_pistons, t.dynamics.mass_matrix * to_pistons);
-  const Vec3<S> drive = force + transposed * other + mass * m.extension_bias;
+sms_status balance_platform(const Platform<S>& platform, const PlatformState<S>& state,
+                            const MechanismAtPistons<S>& mechanism, PlatformTerms<S>& t, PlatformState<S>& rate) {
+  const Vec3<S> force(t.actuator[0].force, t.actuator[1].force, t.actuator[2].force);
   const Piston<S> piston[3] = {t.actuator[0].piston, t.actuator[1].piston, t.actuator[2].piston};
   const SealState<S> seals[3] = {seals_of(state.actuator[0]), seals_of(state.actuator[1]), seals_of(state.actuator[2])};
   ForceBalance<S> balance[3];
-  const sms_status status =
-      balance_pistons(platform.params, platform.laws.friction, piston, seals, mass, drive, t.along, balance);
+  const sms_status status = balance_pistons(platform.params, platform.laws.friction, piston, seals, mechanism.mass,
+                                            Vec3<S>(force + mechanism.load), t.along, balance);
   if (status == SMS_OK) {
     Vec3<S> along;
     for (int i = 0; i < 3; ++i) {
@@ -119,41 +151,44 @@ sms_status balance_platform(const Platform<S>& platform, const PlatformState<S>&
       t.friction(i) = balance[i].friction;
       seal_rates(balance[i], rate.actuator[i]);
     }
-    t.acceleration = to_pistons * (along - m.extension_bias);
+    t.acceleration = mechanism.to_q * (along - mechanism.bias);
   }
   return status;
+}
+
+// The derivative with the mechanism as it is near by.
+template <typename S>
+sms_status derivative_near(const Platform<S>& platform, const PlatformState<S>& state, const PlatformInput<S>& input,
+                           const MechanismAtPistons<S>& mechanism, PlatformTerms<S>& t, PlatformState<S>& rate) {
+  t.extension = mechanism.extension + mechanism.slope * (state.q - mechanism.q);
+  t.velocity = mechanism.slope * state.rate;
+  for (int i = 0; i < 3; ++i) {
+    fill_chambers<S>(platform.params[i], platform.laws, state.actuator[i], t.extension(i), t.velocity(i),
+                     t.actuator[i]);
+    if (!has_room(t.actuator[i])) {
+      return SMS_OUT_OF_RANGE;
+    }
+    actuator_rates<S>(platform.params[i], platform.laws, state.actuator[i], input.command(i), t.actuator[i],
+                      rate.actuator[i]);
+  }
+  const sms_status status = balance_platform(platform, state, mechanism, t, rate);
+  rate.q = state.rate;
+  rate.rate = t.acceleration;
+  return status == SMS_OK && !is_finite(rate.rate) ? SMS_NOT_A_NUMBER : status;
 }
 
 template <typename S>
 sms_status derivative(const Platform<S>& platform, const PlatformState<S>& state, const PlatformInput<S>& input,
                       PlatformTerms<S>& t, PlatformState<S>& rate) {
-  const Geometry<S>& geometry = platform.mechanism.geometry;
   Pose<S> pose;
-  sms_status status = complete_pose(geometry, state.q, tilt_of(state.q), pose_ahead(t, value_of(state.q)), pose);
+  const sms_status status =
+      complete_pose(platform.mechanism.geometry, state.q, tilt_of(state.q), pose_ahead(t, value_of(state.q)), pose);
   if (status != SMS_OK) {
     return status;
   }
   evaluate_dynamics(platform.mechanism, pose, state.rate, t.dynamics);
-  for (int i = 0; i < 3; ++i) {
-    t.extension(i) = t.dynamics.motion.length[i] - geometry.actuator_length(i);
-  }
-  Vec3<S> force;
-  for (int i = 0; i < 3; ++i) {
-    fill_chambers<S>(platform.params[i], platform.laws, state.actuator[i], t.extension(i),
-                     t.dynamics.motion.extension_rate(i), t.actuator[i]);
-    if (!has_room(t.actuator[i])) {
-      return SMS_OUT_OF_RANGE;
-    }
-    force(i) = t.actuator[i].force;
-    actuator_rates<S>(platform.params[i], platform.laws, state.actuator[i], input.command(i), t.actuator[i],
-                      rate.actuator[i]);
-  }
-  const Vec3<S> other = platform_load(t.dynamics, input.wrench) + panhard_load(platform.params[0], t.dynamics.motion) -
-                        t.dynamics.inertial - t.dynamics.weight;
-  status = balance_platform(platform, state, force, other, t, rate);
-  rate.q = state.rate;
-  rate.rate = t.acceleration;
-  return status == SMS_OK && !is_finite(rate.rate) ? SMS_NOT_A_NUMBER : status;
+  t.at_pistons = mechanism_at_pistons(platform, input.wrench, t.dynamics);
+  return derivative_near(platform, state, input, t.at_pistons, t, rate);
 }
 
 template <typename S>

@@ -20,9 +20,23 @@
 
 namespace sms {
 
+// What of a plant changes slowly: of the platform its mechanism.
+template <typename Plant>
+struct SlowTermsOf {
+  using Type = NoSlowTerms;
+  static Type of(const typename Plant::Terms&) { return {}; }
+};
+
+template <typename S>
+struct SlowTermsOf<Platform<S>> {
+  using Type = MechanismAtPistons<S>;
+  static const Type& of(const PlatformTerms<S>& t) { return t.at_pistons; }
+};
+
 // A plant as the integrator wants it.
 template <typename Plant>
 struct PlantSystem {
+  using Slow = typename SlowTermsOf<Plant>::Type;
   static constexpr int switch_count = Plant::legs * actuator_switch_count();
   const Plant& plant;
   typename Plant::Input input;
@@ -30,6 +44,14 @@ struct PlantSystem {
 
   sms_status operator()(const typename Plant::State& state, typename Plant::State& rate) {
     return derivative(plant, state, input, terms, rate);
+  }
+  sms_status operator()(const typename Plant::State& state, Slow& slow, typename Plant::State& rate) {
+    const sms_status status = (*this)(state, rate);
+    slow = SlowTermsOf<Plant>::of(terms);
+    return status;
+  }
+  sms_status near(const typename Plant::State& state, const Slow& slow, typename Plant::State& rate) {
+    return derivative_near(plant, state, input, slow, terms, rate);
   }
   void switches(const typename Plant::State& state, typename Plant::Scalar (&value)[switch_count]) const {
     sms::switches(plant, state, terms, value);
@@ -84,7 +106,7 @@ struct Simulation {
   const Plant plant;
   PlantSystem<Plant> system;
   StepControl<State> control;
-  Run<State> run;
+  Run<State, typename PlantSystem<Plant>::Slow> run;
   S period;
   S fixed_step;  // 0: adaptive
   bool stiff;    // fixed steps are those of integrate_stiff.hpp, not of Runge and Kutta
