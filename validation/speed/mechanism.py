@@ -8,10 +8,7 @@ timed core and peer have to agree.
 from __future__ import annotations
 
 import os
-import re
 import shutil
-import subprocess
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,6 +18,7 @@ import scipy.optimize
 import sms
 from sms.arrays import Array
 
+from validation.speed.callgrind import count
 from validation.speed.timing import Goal, Row, fastest, row
 
 AGREE = 1e-11  # m and rad, between core and peer
@@ -220,12 +218,5 @@ def instruction_rows(program: Path, names: tuple[str, ...]) -> Iterator[Row]:
     if not shutil.which("valgrind"):
         return
     for name in names:
-        with tempfile.NamedTemporaryFile() as file:
-            valgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={file.name}"]
-            command = [*valgrind, "--toggle-collect=*counted_round*", str(program), "1", name]
-            run = subprocess.run(command, check=True, capture_output=True, text=True)
-        collected = re.search(r"Collected : (\d+)", run.stderr)
-        if not collected:
-            raise RuntimeError(f"callgrind counted nothing of {name}: {run.stderr[-300:]}")
-        calls = int(run.stdout.split("\t")[2])
-        yield row(f"{name}: instructions", int(collected[1]) / calls, "")
+        counted = count(program, name)
+        yield row(f"{name}: instructions", counted.instructions / counted.calls, "")

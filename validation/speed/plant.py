@@ -57,9 +57,9 @@ def plant_rows(compiled: Mapping[str, float], install: bool) -> Iterator[Row]:
     exact = core_path(setpoint, 1e-9)
     wanted = float(np.abs(core_path(setpoint, PLATFORM_TOLERANCE) - exact).max())
     numba = numba_peer(setpoint, exact, wanted)
-    yield row(name, milliseconds, "ms", numba, Goal(at_most=5.0, ratio_at_least=5.0))
+    yield row(name, milliseconds, "ms", numba, Goal(at_most=2.0, ratio_at_least=5.0))
     casadi = casadi_peer(setpoint, exact, wanted, install)
-    yield row(name, milliseconds, "ms", casadi, Goal(at_most=5.0, ratio_at_least=20.0))
+    yield row(name, milliseconds, "ms", casadi, Goal(at_most=2.0, ratio_at_least=20.0))
     evaluation = compiled["derivative of the platform"]
     yield row("derivative of the platform", evaluation, "ns")
     yield variants_row()
@@ -132,4 +132,4 @@ def variants_row() -> Row:
         for times in zip(*[(all_of_them(1), all_of_them(2)) for _ in range(3)], strict=True)
     )
     name = f"{VARIANTS} variants of 1 s, two threads"
-    return row(name, together, "s", ("one thread", alone), Goal(ratio_at_least=1.9))
+    return row(name, together, "s", ("one thread", alone), Goal(at_most=2.0, ratio_at_least=1.9))
