@@ -108,6 +108,13 @@ def test_the_band_keeps_what_is_in_it() -> None:
     assert high.roll[middle] == pytest.approx(fast[middle], abs=2e-3)
 
 
+@pytest.mark.parametrize(("low", "high"), [(1e-308, 1.0), (0.0, 1e-300), (1e-9, np.inf)])
+def test_an_edge_far_below_the_sampling_rate_is_refused(low: float, high: float) -> None:
+    time = 0.01 * np.arange(2000)
+    with pytest.raises(InputError, match="too low for a filter"):
+        band_limited(DeckMotion(time, 0.0 * time, 0.0 * time, 0.0 * time, "rest"), low, high)
+
+
 def test_resampling_and_taking_a_part() -> None:
     motion = rolling(5.0)
     again = resampled(resampled(motion, 0.005), 0.02)

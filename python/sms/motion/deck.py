@@ -27,6 +27,7 @@ Delimiter = Literal["comma", "semicolon", "tab", "whitespace"]
 COLUMN_UNITS: Mapping[str, str] = {"time": "s", "roll": "rad", "pitch": "rad", "heave": "m"}
 AXES = ("roll", "pitch", "heave")
 _ORDER = 4  # of the Butterworth filter, which runs forwards and backwards
+SLOWEST = 1e-6  # of the sampling rate: below it the filter's poles are one to rounding
 _ACROSS = 4.0  # samples a period at the band's upper edge, at least
 
 
@@ -150,6 +151,11 @@ def band_limited(motion: DeckMotion, low: float, high: float) -> DeckMotion:
     rate = 1.0 / motion.period
     if not (math.isfinite(low) and 0.0 <= low < high):
         raise InputError(f"band {low:g} to {high:g} Hz: its ends must rise from 0 or more")
+    if 0.0 < (lowest := low or high) < SLOWEST * rate:
+        raise InputError(
+            f"band {low:g} to {high:g} Hz: {lowest:g} Hz is too low for a filter at a sampling rate of {rate:g} Hz; "
+            f"from {SLOWEST * rate:g} Hz is allowed, or 0"
+        )
     steps = []
     edges: list[float] = []
     if low > 0.0:
