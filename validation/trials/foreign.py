@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 import time
 from collections.abc import Sequence
 from concurrent.futures import as_completed
@@ -18,6 +19,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
+import tomlkit
 import typer
 from rich.console import Console
 from sms.diagnosis import Diagnosis, diagnose
@@ -89,6 +91,13 @@ def foreign(
     reference: Annotated[
         bool, typer.Option("--reference", help="With records of the machine when it was well.")
     ] = False,
+    exchanged: Annotated[
+        bool,
+        typer.Option(
+            "--exchanged",
+            help="Identify with the validation records, and the reverse: other questions of the same machines.",
+        ),
+    ] = False,
     as_json: Annotated[
         Path | None, typer.Option("--json", help="File for shares and answers, for programs.")
     ] = None,
@@ -101,7 +110,7 @@ def foreign(
     cores = len(os.sched_getaffinity(0))
     os.environ.update(SMS_THREADS=str(max(cores // workers, 1)), OPENBLAS_NUM_THREADS="1")
     with processes(workers) as pool:
-        jobs = [pool.submit(answer_set, folder, name, reference) for name in sets]
+        jobs = [pool.submit(answer_set, folder, name, reference, exchanged) for name in sets]
         for job in as_completed(jobs):
             answer = job.result()
             answers.append(answer)
@@ -136,15 +145,35 @@ def chosen_sets(folder: Path, only: str) -> list[str]:
     return wanted or sets
 
 
-def answer_set(folder: Path, name: str, reference: bool) -> Answer:
+def answer_set(folder: Path, name: str, reference: bool, exchanged: bool = False) -> Answer:
     """Diagnose one set, then open its key."""
     file = folder / name / "rig.toml"
     with_reference = folder / name / "rig_with_reference.toml"
+    if reference and with_reference.is_file():
+        file = with_reference
     begin = time.perf_counter()
-    answer = diagnose(with_reference if reference and with_reference.is_file() else file)
+    if exchanged:
+        with tempfile.TemporaryDirectory() as other:
+            answer = diagnose(with_exchanged_roles(file, Path(other)))
+    else:
+        answer = diagnose(file)
     seconds = time.perf_counter() - begin
     key = json.loads((folder / "keys" / f"{name}.json").read_text(encoding="utf-8"))
     return scored(name, key, answer, seconds)
+
+
+def with_exchanged_roles(file: Path, folder: Path) -> Path:
+    """A rig file in `folder` with the records of another one, those to identify with and those to validate with
+    exchanged."""
+    other = {"identify": "validate", "validate": "identify"}
+    rig = tomlkit.parse(file.read_text(encoding="utf-8"))
+    data = rig.setdefault("data", tomlkit.table())
+    data["folder"] = str(file.parent.resolve() / data.get("folder", ""))
+    for record in rig["records"]:
+        record["role"] = other.get(record["role"], record["role"])
+    made = folder / file.name
+    made.write_text(tomlkit.dumps(rig), encoding="utf-8")
+    return made
 
 
 def scored(name: str, key: dict[str, Any], answer: Diagnosis, seconds: float) -> Answer:

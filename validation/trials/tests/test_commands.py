@@ -8,11 +8,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from sms.io import InputError
+from sms.io import InputError, load_rig
 from typer.testing import CliRunner
 
 from validation.trials.__main__ import app
-from validation.trials.foreign import chosen_sets, within
+from validation.trials.foreign import chosen_sets, with_exchanged_roles, within
 from validation.trials.machine_commands import as_dict
 from validation.trials.machines import SORTS, tasks
 from validation.trials.scoring import Outcome
@@ -72,3 +72,21 @@ def test_sizes_are_compared_as_that_simulator_counts_them() -> None:
     assert (
         within({"true_values": {"a_law_of_its_own": 1.0}}, answer("valve_leakage", 2e-10)) is None
     )
+
+
+def test_records_exchange_their_roles_and_are_found_where_they_are(tmp_path: Path) -> None:
+    there, here = tmp_path / "there", tmp_path / "here"
+    there.mkdir()
+    here.mkdir()
+    roles = ("identify", "validate", "reference")
+    records = [f'[[records]]\nfile = "{role}.csv"\nrole = "{role}"\n' for role in roles]
+    for role in roles:
+        (there / f"{role}.csv").write_text("time,valve_command,tank_pressure\n", encoding="utf-8")
+    text = '[rig]\nkind = "tank"\n\n[signals]\ntime = "time"\nvalve_command = {}\ntank_pressure = {}\n\n'
+    (there / "rig.toml").write_text(text + "\n".join(records), encoding="utf-8")
+    made = load_rig(with_exchanged_roles(there / "rig.toml", here))
+    found = [
+        (source.file.resolve().parent, source.file.stem, source.role) for source in made.records
+    ]
+    exchanged = ("validate", "identify", "reference")
+    assert found == [(there, role, other) for role, other in zip(roles, exchanged, strict=True)]
