@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 import os
 import subprocess
@@ -143,3 +144,28 @@ def test_a_frame_whose_time_is_none(tmp_path: Path) -> None:
     log.write_text(f"(1.5) can0 101#00\n({400 * '9'}.5) can0 101#00\n")
     with pytest.raises(InputError, match=r"after frame 2 \(its time is none\)"):
         list(read_frames(log))
+
+
+def test_a_name_that_is_too_long_for_a_file_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    record = tmp_path / "record.csv"
+    record.write_text("time,pressure\n0,1\n")
+    for words in (("--out", 300 * "a"), (300 * "b",)):
+        said = failure(capsys, monkeypatch, "new", "bench", str(record), *words)
+        assert said.endswith("too long for a file's name; choose another")
+        assert len(said) < 200
+
+
+def test_poses_in_a_file_that_was_cut_off_are_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = "extension_1 [mm],extension_2 [mm],extension_3 [mm],roll [deg]\n" + 20 * "1,2,3,4\n"
+    (tmp_path / "poses.csv.gz").write_bytes(gzip.compress(table.encode())[:-12])
+    poses = tmp_path / "poses.toml"
+    poses.write_text(
+        '[rig]\nname = "cut"\nkind = "poses"\nposes = "poses.csv.gz"\n'
+        '[noise]\nextension = "0.1 mm"\nroll = "0.02 deg"\n[tolerances]\njoint = "5 mm"\n'
+    )
+    said = failure(capsys, monkeypatch, "calibrate", "geometry", str(poses))
+    assert "cut-off gzip file" in said

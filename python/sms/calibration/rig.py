@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from sms.arrays import Array
 from sms.calibration.schema import NoiseTable, PosesFile, TolerancesTable
 from sms.errors import InputError, did_you_mean
+from sms.io.table_files import text_of_file
 from sms.io.toml_tables import checked, parse_toml, read_text
 from sms.io.units import array_to_si, split_column_name, to_si
 
@@ -162,12 +164,8 @@ def _positive(said: str | float, unit: str, where: str) -> float:
 
 def _read(file: Path, distances: Sequence[Distance]) -> Poses:
     try:
-        cells = pd.read_csv(file, comment="#")
-    except OSError as problem:
-        raise InputError(
-            f"{file}: cannot be read ({problem.strerror}); correct the name in [rig]"
-        ) from None
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as problem:
+        cells = pd.read_csv(io.StringIO(text_of_file(file)), comment="#")
+    except (pd.errors.ParserError, pd.errors.EmptyDataError) as problem:
         raise InputError(f"{file}: no table of poses ({problem})") from None
     channels = CHANNELS | {DISTANCE + d.name: "m" for d in distances}
     units = dict.fromkeys(EXTENSIONS, "m") | channels

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import sys
 from dataclasses import replace
@@ -211,6 +212,12 @@ def main() -> None:
         app()
     except InputError as problem:
         print(f"sms: {_in_one_line(str(problem))}", file=sys.stderr)
+        sys.exit(BAD_INPUT)
+    except OSError as problem:
+        if problem.errno != errno.ENAMETOOLONG:
+            raise
+        name = _in_one_line(str(problem.filename))
+        print(f"sms: '{name[:60]}...': too long for a file's name; choose another", file=sys.stderr)
         sys.exit(BAD_INPUT)
     except KeyboardInterrupt:
         print("sms: stopped; nothing was written", file=sys.stderr)

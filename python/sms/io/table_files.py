@@ -61,7 +61,7 @@ def delimiter_of(file: Path) -> str:
     """
     if ending_of(file) not in TEXT_ENDINGS or measurement_format(file) or is_can_log(file):
         return "comma"
-    lines = [line for line in _decoded(file).splitlines() if line.strip(" \t,;")]
+    lines = [line for line in text_of_file(file).splitlines() if line.strip(" \t,;")]
     looked_at = [line for line in lines if not line.lstrip().startswith("#")][:LOOKED_AT]
 
     def cells(name: str) -> tuple[bool, int]:
@@ -125,8 +125,11 @@ LARGEST_TEXT = 128 * 2**20
 """bytes of a file of text, unpacked: a million lines of ten columns. The table in memory takes ten times as much."""
 
 
-def _decoded(file: Path) -> str:
-    """The text of a file, unpacked if its name ends with .gz. No more is unpacked than is read."""
+def text_of_file(file: Path) -> str:
+    """The text of a file, unpacked if its name ends with .gz; InputError for what cannot be read or is far too long.
+
+    No more is unpacked than is read.
+    """
     try:
         with (gzip.open if is_packed(file) else open)(file, "rb") as opened:
             content = opened.read(LARGEST_TEXT + 1)
@@ -146,7 +149,7 @@ def _decoded(file: Path) -> str:
 
 
 def _read_text(file: Path, delimiter: str, columns: Sequence[str] | None) -> Table:
-    return table_of_text(file, _decoded(file), delimiter, columns)
+    return table_of_text(file, text_of_file(file), delimiter, columns)
 
 
 def table_of_text(
