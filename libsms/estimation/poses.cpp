@@ -228,7 +228,12 @@ Calibration calibrate(const PoseProblem& problem, const LegParams<double>& start
     throw std::invalid_argument("calibrate: every parameter needs a tolerance above zero");
   }
   const Search search{problem, start, free, tolerance};
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n), left;
+  RowMatrix slopes;
+  problem.evaluate(start, free, &left, &slopes);
+  if (!left.allFinite() || !slopes.allFinite()) {
+    throw std::invalid_argument("calibrate: with the parameters as they are declared a pose is out of all range");
+  }
   ceres::Problem least_squares;
   for (int pose = 0; pose < problem.poses(); ++pose) {
     least_squares.AddResidualBlock(new OnePose(search, pose), huber > 0.0 ? new ceres::HuberLoss(huber) : nullptr,

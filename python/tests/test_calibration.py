@@ -361,3 +361,17 @@ def test_tables_take_the_parameters_as_words(tmp_path: Path) -> None:
     )
     said = CliRunner().invoke(app, ["export", "table-params", str(file)])
     assert (said.exit_code, said.stdout.split()) == (0, ["base_joint_1_x=1.3701"])
+
+
+def test_a_mark_out_of_all_range_is_one_sentence(
+    machine: Machine, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Without what the solver would say of it."""
+    mark = '[distances.tape]\nground = ["0.1 m", "0 m", "0 m"]\nplatform = ["0.1 m", "-1e308 m", "0 m"]\n'
+    rig = _write(tmp_path, machine.rig, mark + 'noise = "1 mm"\n')
+    text = (tmp_path / "poses.csv").read_text().splitlines()
+    lines = [text[0] + ",distance_tape [m]", *(line + ",2.0" for line in text[1:])]
+    (tmp_path / "poses.csv").write_text("\n".join(lines) + "\n")
+    with pytest.raises(ValueError, match="out of all range"):
+        calibrate_poses(load_poses(rig))
+    assert capfd.readouterr().err == ""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from sms import _core
 from sms.identification.friction import identify_friction
-from sms.identification.friction_fit import collinearity
+from sms.identification.friction_fit import collinearity, fit_law
 from sms.identification.friction_result import declarations, sentences
 from sms.io import InputError
 from test_cli_diagnose import sms as command
@@ -81,3 +83,11 @@ def test_the_command_writes_a_rig_file_with_what_was_found(tmp_path: Path) -> No
     again = identify_friction(tmp_path / "friction" / "friction.toml")  # every reader takes it
     assert again.law("acceleration_dependent").told
     assert 'id="map"' in (tmp_path / "friction" / "report.html").read_text()
+
+
+@pytest.mark.filterwarnings("ignore:Mean of empty slice", "ignore:invalid value")
+def test_a_record_that_tells_nothing_by_itself_is_named(tmp_path: Path) -> None:
+    first, second, *_ = identify_friction(draw(tmp_path, 4, RUNS)).motions
+    nothing = replace(second, used=np.zeros_like(second.used))
+    with pytest.raises(InputError, match=f"record {second.name}: by itself"):
+        fit_law("two_branch", [first, nothing], [], _core.Params(), ())

@@ -108,6 +108,15 @@ def test_the_band_keeps_what_is_in_it() -> None:
     assert high.roll[middle] == pytest.approx(fast[middle], abs=2e-3)
 
 
+def test_a_fade_over_no_time_to_speak_of_leaves_the_motion() -> None:
+    time = 0.01 * np.arange(2000)
+    motion = DeckMotion(time, np.sin(time), np.cos(time), 0.0 * time, "a sine and a cosine")
+    with np.errstate(over="raise"):
+        led = faded(motion, 1e-308)
+    assert np.array_equal(led.pitch[1:-1], motion.pitch[1:-1])
+    assert led.pitch[0] == led.pitch[-1] == 0.0
+
+
 @pytest.mark.parametrize(("low", "high"), [(1e-308, 1.0), (0.0, 1e-300), (1e-9, np.inf)])
 def test_an_edge_far_below_the_sampling_rate_is_refused(low: float, high: float) -> None:
     time = 0.01 * np.arange(2000)

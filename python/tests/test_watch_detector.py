@@ -64,7 +64,9 @@ def test_the_score_of_a_known_shift_recovers_its_size() -> None:
     found, error = sizes(b, segments)
     assert np.all(np.abs(found - size) < 5.0 * error)
     total = sum(s.response for s in segments)
-    grown = error / np.sqrt(b.inflation / total)  # by a scatter that is a mean of squares, never below one
+    grown = error / np.sqrt(
+        b.inflation / total
+    )  # by a scatter that is a mean of squares, never below one
     squared = sum(s.response**2 for s in segments)
     freedom = np.min(total**2 / squared) - 1.0
     assert np.all(grown >= 1.0 - 1e-12)

@@ -15,6 +15,7 @@ How often that happens is counted by validation/trials/identify_friction.py.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,7 @@ from scipy.stats import t as student
 
 from sms import _core
 from sms.arrays import Array
+from sms.errors import InputError
 from sms.estimation.block_statistics import covariance_of, merge_windows, windows_per_block
 from sms.identification.estimate import Estimate, Free, estimate, with_start
 from sms.parameters import PARAMETERS
@@ -138,7 +140,7 @@ def fit_law(
     between = leaving_out_runs(
         found.jacobian[used], found.residual[used], record, ~np.array(found.at_bound)
     )
-    alone = [_estimate(*problem_of([m], law), found.params, names) for m in identify]
+    alone = [_alone(m, law, (found.params, start), names) for m in identify]
     own_freedom = max(int(block.max()) + 1 - len(names), 1)
     told = []
     for i, name in enumerate(names):
@@ -211,6 +213,26 @@ def _choose(
     )
     names, left_out = showable(problem, used, plain, (*dry, *rest))
     return names, (*left_out, (height, reason), (width, reason)), plain
+
+
+def _alone(
+    motion: Motion, law: str, starts: Sequence[_core.Params], names: Sequence[str]
+) -> Estimate:
+    """Of one record by itself, from the first start at which it tells every parameter; InputError where there is none.
+
+    Values at a bound may hide one from another.
+    """
+    *others, last = starts
+    for start in others:
+        with suppress(ValueError):
+            return _estimate(*problem_of([motion], law), start, names)
+    try:
+        return _estimate(*problem_of([motion], law), last, names)
+    except ValueError as problem:
+        raise InputError(
+            f"record {motion.name}: by itself it cannot be fitted ({problem}); give it the role 'validate', "
+            "or compare more of it: [data] speed_above"
+        ) from None
 
 
 def _estimate(

@@ -203,7 +203,7 @@ def faded(motion: DeckMotion, duration: float) -> DeckMotion:
     if duration == 0.0:
         return motion
     from_ends = np.minimum(motion.time, motion.duration - motion.time)
-    share = 0.5 - 0.5 * np.cos(math.pi * np.clip(from_ends / duration, 0.0, 1.0))
+    share = 0.5 - 0.5 * np.cos(math.pi * (np.minimum(from_ends, duration) / duration))
     return replace(
         motion,
         roll=share * motion.roll,
