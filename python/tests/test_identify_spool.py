@@ -82,3 +82,14 @@ def test_the_command_writes_a_rig_file_that_is_read_again(tmp_path: Path) -> Non
     text = (tmp_path / "records" / "rig.toml").read_text()
     other.write_text(text.replace("spool_test", "tank") + '\n[signals]\ntime = "time"\n')
     refused(command("identify", "spool", str(other), cwd=tmp_path), "signals")
+
+
+def test_an_end_of_the_travel_that_no_spool_has_is_refused(tmp_path: Path) -> None:
+    """A tenth of a metre, where the reading is stuck."""
+    draw(tmp_path, SEED)
+    steps = tmp_path / "steps.csv"
+    head, *rows = steps.read_text().splitlines()
+    stuck = [row.rpartition(",")[0] + ",0.1" for row in rows[100:200]]
+    steps.write_text("\n".join([head, *rows[:100], *stuck, *rows[200:]]) + "\n")
+    with pytest.raises(InputError, match="spool_position stands still at an end"):
+        identify_spool(tmp_path / "rig.toml")

@@ -93,7 +93,8 @@ def _run_one(seed: int, number: int, base: Base, root: Path, keep: Path | None) 
     code = _child(work, place / "said", stopped=WATCHED if in_real_time else 0.0)
     seconds = time.monotonic() - began
     said = (place / "said.err").read_text(errors="replace")
-    verdict = judge(code, said, folder / "out")
+    shown = (place / "said.out").read_text(errors="replace")
+    verdict = judge(code, said, folder / "out", shown)
     if verdict not in GOOD and keep is not None:
         shutil.copytree(place, keep / f"{seed}-{number}", dirs_exist_ok=True)
     what = told.read_text() if told.exists() else base.folder
@@ -111,8 +112,8 @@ def _command(case: Case) -> None:
     main()
 
 
-def judge(code: int, said: str, out: Path) -> str:
-    """What an exit code (negative: a signal) and the text on standard error amount to."""
+def judge(code: int, said: str, out: Path, shown: str = "") -> str:
+    """What an exit code (negative: a signal), the text on standard error and that on standard output amount to."""
     lines = [line for line in said.splitlines() if line.strip()]
     if code == NOT_MADE:
         return "the fuzzer's own mistake"
@@ -132,6 +133,8 @@ def judge(code: int, said: str, out: Path) -> str:
         return f"exit code {code}"
     if "─ Error ─" in said:  # of the parser of the command line
         return "refused"
+    if not lines and shown.lstrip().startswith("Usage: "):  # of several commands none was named
+        return "ended as documented"
     if not lines or not all(line.startswith(_OPENINGS) for line in lines):
         return "more than a sentence"
     left = [f for f in out.rglob("*") if f.is_file()] if out.is_dir() else []

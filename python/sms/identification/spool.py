@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sms import _core
+from sms import OutOfRangeError, _core
 from sms.arrays import Array
 from sms.callbacks import Progress
 from sms.errors import InputError
@@ -239,7 +239,12 @@ def _fit_law(
     if _reaches_its_end(identify):
         names.append("spool_limit")
         furthest = max(float(np.max(np.abs(r.position))) for r in identify)
-        start = with_start(start, spool_limit=furthest)
+        try:
+            start = with_start(start, spool_limit=furthest)
+        except OutOfRangeError as beyond:
+            raise InputError(
+                f"spool_position stands still at an end of its travel, where {beyond}; check its unit and its readings"
+            ) from None
     residual, _ = problem.evaluate(start)
     spread = max(float(np.sqrt(np.mean(residual**2))), 1e-9)
     rough = estimate(

@@ -79,6 +79,11 @@ def test_how_an_end_is_judged(tmp_path: Path, code: int, said: str, verdict: str
     assert judge(code, said, tmp_path) == verdict
 
 
+def test_the_help_of_several_commands_is_documented(tmp_path: Path) -> None:
+    assert judge(2, "", tmp_path, "\n Usage: sms can [OPTIONS] COMMAND\n") == "ended as documented"
+    assert judge(2, "", tmp_path, "extension 1: 3 mm\n") == "more than a sentence"
+
+
 def test_what_is_left_of_a_refusal_and_an_answer_that_is_no_json(tmp_path: Path) -> None:
     (tmp_path / "x.json").write_text('{"a": NaN}')
     assert judge(2, "sms: no\n", tmp_path) == "left files"
