@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -155,6 +156,13 @@ def test_files_that_share_nothing(tmp_path: Path) -> None:
         compare_files(measured, simulated, ["extension_2"])
     with pytest.raises(InputError, match="overlap in less than 8 samples"):
         compare_files(measured, simulated, shift=1e4)
+    head, row, *_ = measured.read_text().splitlines()
+    measured.write_text(f"{head}\n{row}\n")
+    with (
+        warnings.catch_warnings(action="error"),
+        pytest.raises(InputError, match="overlap in less than 8 samples"),
+    ):
+        compare_files(measured, simulated)
     write_table(tmp_path / "other.csv", {"time [s]": TIME, "force [N]": TIME})
     refused(command("compare", str(measured), "other.csv", cwd=tmp_path), "share no signal")
     assert not (tmp_path / "comparison").exists()

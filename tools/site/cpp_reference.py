@@ -21,6 +21,9 @@ GENERATE_HTML = NO
 GENERATE_LATEX = NO
 GENERATE_XML = YES
 XML_PROGRAMLISTING = NO
+MACRO_EXPANSION = YES
+EXPAND_ONLY_PREDEF = YES
+PREDEFINED = "__attribute__(x)="
 EXTRACT_ALL = YES
 QUIET = YES
 WARNINGS = NO
@@ -103,7 +106,8 @@ def _member(member: ElementTree.Element, space: str) -> Declaration:
             Declaration("enumerator", _text(v.find("name")), _text(v.find("name")), _line(member))
             for v in member.iterfind("enumvalue")
         )
-        return Declaration("enum", full, full, _line(member), values)
+        scoped = member.get("strong") == "yes"
+        return Declaration("enum-class" if scoped else "enum", full, full, _line(member), values)
     elif kind == "typedef":
         head = f"{template}{full} = {result.removeprefix('typedef ')}"
         return Declaration("type", full, head, _line(member))

@@ -204,7 +204,7 @@ def _common(
     """Even times of the measurement within both, and the signals there."""
     mine, yours = one["time"][0], other["time"][0] + shift
     first, last = max(mine[0], yours[0]), min(mine[-1], yours[-1])
-    step = float(np.median(np.diff(mine)))
+    step = float(np.median(np.diff(mine))) if mine.size > 1 else math.inf
     count = math.floor((last - first) / step + 1e-6) + 1 if last > first else 0
     if count < 8:
         raise InputError(
