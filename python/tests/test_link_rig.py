@@ -160,6 +160,16 @@ def test_a_listener_sees_every_frame_of_both_sides_once() -> None:
         assert numbers.count(0x110) == link.counts[0x110]
 
 
+def test_a_motion_of_years_is_refused_before_anything_moves() -> None:
+    """Its time was in microseconds, say."""
+    motion = gentle()
+    with desk_and_rig() as (link, world):
+        link.connect()
+        with pytest.raises(InputError, match="at most a day"):
+            drive(link, PlatformMotion(1e9 * motion.time, motion.roll, motion.pitch, motion.height))
+        assert world.machine.truth.mode == 0
+
+
 def test_a_drive_that_the_rig_leaves_says_why() -> None:
     with desk_and_rig(faults=["sensor_broken:2@6s"]) as (link, _):
         link.connect()

@@ -11,10 +11,12 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.callbacks import Progress
+from sms.errors import InputError
 from sms.link.codec import Value, period
 from sms.link.motion import MID_HEIGHT, PlatformMotion
 from sms.link.rig_link import LinkError, RigLink
 
+LONGEST = 86400.0  #: s; of a motion
 APPROACH = 4.0  #: s; from level to the motion's first sample, and back at the end
 LEVEL_TIME = 20.0  #: s; the longest that a platform may take to come up to mid-height
 LEVEL_BAND = 0.005  #: m; closer than this to mid-height counts as there
@@ -101,8 +103,12 @@ def drive(
     """Level the platform, approach the motion's begin, stream it, return to level.
 
     `rate` in Hz; by default that of the DBC. The link must be connected; afterwards the rig is levelling.
-    LinkError when the rig refuses or stops following.
+    LinkError when the rig refuses or stops following, InputError for a motion of more than a day.
     """
+    if motion.duration > LONGEST:
+        raise InputError(
+            f"the motion takes {motion.duration:.3g} s, and at most a day, {LONGEST:g} s, is driven; check its time's unit"
+        )
     interval = period("AttitudeSetpoint") if rate is None else 1.0 / rate
     approach = motion.at(np.array([0.0]))[0]
     level = np.array([0.0, 0.0, MID_HEIGHT])
