@@ -107,7 +107,7 @@ def drive(
     """
     if motion.duration > LONGEST:
         raise InputError(
-            f"the motion takes {motion.duration:.3g} s, and at most a day, {LONGEST:g} s, is driven; check its time's unit"
+            f"the motion takes {motion.duration:.3g} s, and at most a day, {LONGEST:g} s, is driven; check its unit"
         )
     interval = period("AttitudeSetpoint") if rate is None else 1.0 / rate
     approach = motion.at(np.array([0.0]))[0]
