@@ -8,6 +8,7 @@ processor can do at once it does.
 from __future__ import annotations
 
 import argparse
+import shutil
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -70,7 +71,16 @@ def main() -> None:
     """Count, time, print."""
     parser = argparse.ArgumentParser(prog="python -m validation.speed.profile", description=__doc__)
     parser.add_argument("builds", nargs="*", default=[NOW], metavar="NAME=PROGRAM")
-    builds = {name: Path(p) for name, p in (b.split("=", 1) for b in parser.parse_args().builds)}
+    builds = {}
+    for said in parser.parse_args().builds:
+        name, _, program = said.partition("=")
+        if not program:
+            parser.error(f"'{said}' is no NAME=PROGRAM, such as {NOW}")
+        if not Path(program).is_file():
+            parser.error(f"{program}: there is no such program; ./dev bench builds it")
+        builds[name] = Path(program)
+    if not shutil.which("valgrind"):
+        parser.error("valgrind is missing: apt-get install valgrind")
     for name in BY_FUNCTION:
         counts = {build: count(program, name) for build, program in builds.items()}
         print(f"### {name}\n\n{function_table(counts)}", flush=True)
