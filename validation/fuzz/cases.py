@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import shutil
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,7 +49,7 @@ def make(seed: int, number: int, root: Path, folder: Path) -> Case:
         file = among[int(random.integers(len(among)))]
         if not file.exists():  # it has another name by now
             break
-        how, new = _spoil(file, folder, random)
+        how, new = spoil(file, folder, random)
         done.append(f"{how} of {file.name}")
         if random.uniform() < 0.05:
             new = _renamed(new, random)
@@ -58,12 +59,12 @@ def make(seed: int, number: int, root: Path, folder: Path) -> Case:
     return Case(base, command, ", ".join(done))
 
 
-def _spoil(file: Path, folder: Path, random: Random) -> tuple[str, Path]:
+def spoil(file: Path, folder: Path, random: Random) -> tuple[str, Path]:
     """What was done to a file, and the file, which may have another ending now."""
     content = file.read_bytes()
     packed = file.suffix == ".gz"
     if packed:
-        content = gzip.decompress(content) if content[:2] == b"\x1f\x8b" else content
+        content = _unpacked(content)
     how: Mutation = spoil_bytes
     if file.suffix in (".toml", ".dbc"):
         how = spoil_toml if random.uniform() < 0.9 else spoil_bytes
@@ -85,6 +86,14 @@ def _spoil(file: Path, folder: Path, random: Random) -> tuple[str, Path]:
         )
     file.write_bytes(spoilt)
     return how.__name__, file
+
+
+def _unpacked(content: bytes) -> bytes:
+    """What a packed file holds; as it is, where an earlier mutation spoilt the packing."""
+    try:
+        return gzip.decompress(content)
+    except (OSError, EOFError, zlib.error):
+        return content
 
 
 def _in_format(file: Path, content: bytes, random: Random) -> Path | None:

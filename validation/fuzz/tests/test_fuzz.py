@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import os
 import signal
 import subprocess
@@ -12,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validation.fuzz.cases import base_of, make
+from validation.fuzz.cases import base_of, make, spoil
 from validation.fuzz.inputs import BASES
 from validation.fuzz.run import TRACEBACK, _child, judge
 
@@ -99,3 +100,10 @@ def test_a_child_that_crashes_or_hangs_ends_alone(tmp_path: Path) -> None:
     assert _child(lambda: time.sleep(60.0), said, stopped=0.2) == TRACEBACK
     assert _child(lambda: np.zeros(2**33).sum(), said) == TRACEBACK  # 64 GiB
     assert "MemoryError" in (tmp_path / "said.err").read_text()
+
+
+def test_a_packed_file_can_be_spoilt_twice(tmp_path: Path) -> None:
+    """Seen: seed 1498533301 cut a packed file short, drew it again, and could not unpack it."""
+    cut = tmp_path / "record.csv.gz"
+    cut.write_bytes(gzip.compress(b"time,extension\n0,0.1\n")[:-12])
+    assert spoil(cut, tmp_path, np.random.default_rng(1))[1].exists()
