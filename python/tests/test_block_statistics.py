@@ -93,6 +93,26 @@ def test_robust_errors_cover_the_scatter_of_estimates(rng: np.random.Generator) 
     assert 0.8 < np.mean(errors) / np.std(estimates) < 1.25
 
 
+def test_what_is_declared_of_a_twin_counts_in_a_standard_error(rng: np.random.Generator) -> None:
+    """A gain and a bore scale one column: what is declared of the bore is all that tells how large the gain is."""
+    strokes, samples, width = 30, 100, 0.04
+    stroke = np.repeat(np.arange(strokes), samples)
+    push = np.sign(np.sin(stroke * np.pi + 0.5)) + 2.0
+    column = np.column_stack([push, push, np.ones(len(stroke))])
+    known = np.diag([0.0, width**-2, 0.0])
+    departures, errors = [], []
+    for _ in range(200):
+        truth = np.array([0.3, width * rng.normal(), 0.1])
+        noise = np.concatenate([coloured(rng, samples, 0.97) for _ in range(strokes)])
+        y = column @ truth + 0.1 * noise
+        weight = float(np.mean(y**2))
+        beta = np.linalg.solve(column.T @ column + weight * known, column.T @ y)
+        covariance = covariance_of(column, y - column @ beta, stroke, known, weight)
+        departures.append(beta[0] - truth[0])
+        errors.append(np.sqrt(covariance[0, 0]))
+    assert 0.8 < np.mean(errors) / np.std(departures) < 1.25
+
+
 def test_projection_leaves_nothing_of_what_the_nuisance_spans(rng: np.random.Generator) -> None:
     nuisance = rng.normal(size=(200, 3)) * np.array([1e6, 1.0, 1e-6])
     inside = nuisance @ np.array([[1e-6], [2.0], [3e5]])

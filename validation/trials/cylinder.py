@@ -21,6 +21,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
+from scipy.stats import norm
 from sms.demo.hidden import key_of, said
 from sms.diagnosis import diagnose
 
@@ -39,7 +40,8 @@ class Outcome:
     named: tuple[tuple[str, ...], ...]
     """The members of each named cause."""
     estimate: float | None
-    """The parameter as the diagnosis has it, where it named the hidden effect itself."""
+    """The hidden effect's parameter as the diagnosis has it, where it named that effect, alone or in a class."""
+    standard_error: float | None = None
 
     @property
     def right(self) -> bool:
@@ -56,6 +58,13 @@ class Outcome:
         return any(self.hidden not in members for members in self.named)
 
     @property
+    def within(self) -> bool | None:
+        """Whether the truth is within the stated 95 % interval; None where no size was stated."""
+        if self.estimate is None or self.standard_error is None:
+            return None
+        return abs(self.estimate - self.value) <= norm.ppf(0.975) * self.standard_error
+
+    @property
     def said(self) -> str:
         return " + ".join("|".join(members) for members in self.named) or self.verdict
 
@@ -70,8 +79,17 @@ def run_trial(seed: int, effect: str | None = None, multiple: float = 3.0) -> Ou
         truth = open_truth(sealed, records)
     hidden = key_of(truth["effect"], truth["signal"])
     named = tuple(map(tuple, said(answer)))
-    values = {key_of(c.effect, c.signal): c.parameters[0].value for c in answer.causes}
-    return Outcome(seed, hidden, truth["value"], answer.verdict, named, values.get(hidden))
+    found = next(
+        (
+            m.parameters[0]
+            for cause in answer.causes
+            for m in (cause, *cause.alternatives)
+            if key_of(m.effect, m.signal) == hidden
+        ),
+        None,
+    )
+    size = (None, None) if found is None else (found.value, found.standard_error)
+    return Outcome(seed, hidden, truth["value"], answer.verdict, named, *size)
 
 
 def run_trials(
@@ -112,11 +130,13 @@ def confusion_matrix(outcomes: Sequence[Outcome]) -> Table:
 def summary(outcomes: Sequence[Outcome]) -> str:
     healthy = [o for o in outcomes if o.hidden == "none"]
     ill = [o for o in outcomes if o.hidden != "none"]
+    sizes = [o.within for o in ill if o.within is not None]
     return (
         f"healthy: {sum(o.right for o in healthy)} of {len(healthy)} without a finding, "
         f"{sum(o.wrong_name for o in healthy)} false names; "
         f"hidden effect: {sum(o.right for o in ill)} of {len(ill)} found, "
-        f"{sum(o.wrong_name for o in ill)} wrong names"
+        f"{sum(o.wrong_name for o in ill)} wrong names; "
+        f"{sum(sizes)} of {len(sizes)} within the stated 95 % interval"
     )
 
 

@@ -310,13 +310,15 @@ def cost_of_departure(fitted: Fitted) -> float:
 
 
 def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
-    """(free, free). Without a declared noise the blocks alone say how sure an estimate is."""
+    """(free, free). Without a declared noise the blocks, and what is declared, alone say how sure an estimate is."""
     found, covariance = fitted.fit, np.zeros((pull.shape[1], pull.shape[1]))
     if not runs.whitened:
         moved = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
         if len(moved):
+            weight = fitted.hypothesis.sample**2
+            known = pull[:, moved].T @ pull[:, moved] / weight
             covariance[np.ix_(moved, moved)] = covariance_of(
-                found.jacobian[:, moved], found.residual, runs.block
+                found.jacobian[:, moved], found.residual, runs.block, known, weight
             )
         return covariance
     jacobian, residual = fitted.whiten(found.jacobian), fitted.whiten(found.residual)

@@ -65,14 +65,26 @@ def score_test(
     return Scores(statistic, np.asarray((1.0 + exceed) / (1.0 + draws)))
 
 
-def covariance_of(jacobian: Array, residual: Array, block: Index) -> Array:
-    """Covariance (k, k) of least-squares parameters, robust to any correlation within blocks."""
+def covariance_of(
+    jacobian: Array,
+    residual: Array,
+    block: Index,
+    known: Array | None = None,
+    weight: float = 1.0,
+) -> Array:
+    """Covariance (k, k) of least-squares parameters, robust to any correlation within blocks.
+
+    known: (k, k), the inverse covariance of what was known of the parameters before; the fit minimised
+    |residual|^2 + weight |departure|^2, the departure in standard deviations of that, residuals (n,) in any unit.
+    """
     gram = jacobian.T @ jacobian
+    scatter = scatter_of_scores(jacobian, residual, block)
+    if known is not None:
+        gram, scatter = gram + weight * known, scatter + weight**2 * known
     scale = np.maximum(np.sqrt(np.diag(gram)), 1e-150)  # its square is a number still
     units = np.outer(scale, scale)
     bread = np.linalg.pinv(gram / units, rcond=1e-12)
-    scatter = scatter_of_scores(jacobian, residual, block) / units
-    return np.asarray(bread @ scatter @ bread / units)
+    return np.asarray(bread @ (scatter / units) @ bread / units)
 
 
 def scatter_of_scores(jacobian: Array, residual: Array, block: Index) -> Array:

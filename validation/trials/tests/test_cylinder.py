@@ -9,6 +9,7 @@ import os
 
 import pytest
 from rich.console import Console
+from scipy.stats import binom
 
 from validation.random_cases import SEED
 from validation.trials.cylinder import Outcome, confusion_matrix, run_trials, some_effect, summary
@@ -32,6 +33,8 @@ def trial(first: int, count: int) -> None:
     console.print(summary(outcomes))
     assert sum(o.wrong_name for o in outcomes if o.hidden == "none") <= count // COUNT
     assert sum(o.right for o in outcomes if o.hidden != "none") >= count - 2 * count // COUNT
+    within = [o.within for o in outcomes if o.within is not None]
+    assert sum(within) >= binom.ppf(1e-3, len(within), 0.95)
 
 
 def test_hidden_effects_are_found_and_health_is_left_alone() -> None:
@@ -57,3 +60,5 @@ def test_the_trial_itself_can_tell_right_from_wrong() -> None:
     assert Outcome(1, "none", 0.0, "cause", ((friction,),), None).wrong_name
     assert not Outcome(1, "none", 0.0, "unknown", (), None).right
     assert Outcome(1, "bore_scratch", 1.0, "unknown", (), None).right
+    assert Outcome(1, gain, 0.01, "cause", ((gain,),), 0.012, 0.0011).within
+    assert not Outcome(1, gain, 0.01, "cause", ((gain,),), 0.012, 0.0009).within
