@@ -375,3 +375,22 @@ def test_a_mark_out_of_all_range_is_one_sentence(
     with pytest.raises(ValueError, match="out of all range"):
         calibrate_poses(load_poses(rig))
     assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize(("cell", "refused"), [("1e308", True), ("1001", True), ("999", False)])
+def test_a_distance_out_of_all_range(
+    machine: Machine, tmp_path: Path, cell: str, refused: bool
+) -> None:
+    """Seen: a tape's column of 1e308 m ended in warnings of overflow beside an answer."""
+    mark = (
+        '[distances.tape]\nground = ["0.1 m", "0 m", "0 m"]\nplatform = ["0.1 m", "0 m", "0 m"]\n'
+    )
+    rig = _write(tmp_path, machine.rig, mark + 'noise = "1 m"\n')
+    text = (tmp_path / "poses.csv").read_text().splitlines()
+    lines = [text[0] + ",distance_tape [m]", *(f"{line},{cell}" for line in text[1:])]
+    (tmp_path / "poses.csv").write_text("\n".join(lines) + "\n")
+    if not refused:
+        load_poses(rig)
+        return
+    with pytest.raises(InputError, match=r"pose 1, column 'distance_tape .m.': .* more than any"):
+        load_poses(rig)

@@ -31,6 +31,8 @@ TOLERANCES = {
     "attitude_zero": "rad",
 }
 """What the drawing says half widths of, with the unit; defaults are TolerancesTable's."""
+LARGEST = {"m": 1e3, "rad": 2.0 * np.pi}
+"""What a pose may read at most: far more than any platform has, and squares that are numbers still."""
 LEAST_POSES = 6
 KEPT_ASIDE = 5
 """Every so many poses one is a validation pose, where no file of them is named."""
@@ -187,6 +189,14 @@ def _read(file: Path, distances: Sequence[Distance]) -> Poses:
                 f"{file}: pose {bad[0] + 1}, column '{header}': not a number; leave it empty"
             )
         columns[name] = array_to_si(values, unit, units[name], f"{file}, column '{header}'")
+        most = LARGEST[units[name]]
+        beyond = np.flatnonzero(np.abs(columns[name]) > most)
+        if beyond.size:
+            row = beyond[0]
+            raise InputError(
+                f"{file}: pose {row + 1}, column '{header}': {values[row]:g} {unit} is more than any platform reads "
+                f"({most:.4g} {units[name]}); leave it empty, or check the unit"
+            )
     for name in EXTENSIONS:
         if name not in columns or not np.isfinite(columns[name]).all():
             raise InputError(
