@@ -94,7 +94,8 @@ def spoil_time(content: bytes, random: Random) -> bytes:
     how, middle = int(random.integers(14)), max(len(time) // 2, 1)
     step = time[1] - time[0] if time.size > 1 else 0.01
     if how <= 4:
-        table[:, 0] = (time * 1e3, time / 1e3, time[::-1], 0.0 * time, time * 1e40)[how]
+        with np.errstate(all="ignore"):  # a cell may be infinite by now
+            table[:, 0] = (time * 1e3, time / 1e3, time[::-1], 0.0 * time, time * 1e40)[how]
     elif how == 5:
         table[middle:, 0] += pick((1.0, 1e6, -1.0, 1e-9, 1e300), random)
     elif how == 6:

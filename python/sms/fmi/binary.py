@@ -64,8 +64,8 @@ def library_file() -> Path:
     file = folder() / "sms_fmu.so"
     if not file.is_file():
         raise InputError(
-            f"{file}: there is no such file, so sms was built without its library for FMUs; install it again, "
-            "with -Ccmake.define.SMS_FMU=ON where it is compiled"
+            f"{file}: there is no such file, so sms was built without its library for FMUs; ./dev build in a "
+            "checkout makes it, elsewhere install sms again, with -Ccmake.define.SMS_FMU=ON where it is compiled"
         )
     return file
 
