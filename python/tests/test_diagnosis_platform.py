@@ -155,6 +155,7 @@ def test_a_leak_of_one_leg_is_named_with_its_size(tmp_path: Path) -> None:
     assert "leg 2" in answer.sentence
 
 
+@pytest.mark.full
 def test_a_rod_of_another_length_is_named_with_its_size(tmp_path: Path) -> None:
     """By roll and pitch, which disagree with the extensions."""
     longer = 0.012  # m

@@ -70,6 +70,7 @@ def test_a_leak_that_opens_at_a_pressure_is_another_law(tmp_path: Path) -> None:
     assert law.high[0] > 1.2 * law.low[0] > 0.0
 
 
+@pytest.mark.full
 def test_on_a_machine_whose_flow_is_off_a_leak_of_another_size_in_each_half_keeps_its_law(
     tmp_path: Path,
 ) -> None:
