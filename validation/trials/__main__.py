@@ -7,7 +7,16 @@ import sys
 import typer
 from sms.errors import InputError
 
-from validation.trials import calibrate, foreign, history, lung, machine_commands, slips, watch
+from validation.trials import (
+    calibrate,
+    foreign,
+    history,
+    lung,
+    machine_commands,
+    pairs,
+    slips,
+    watch,
+)
 
 app = typer.Typer(
     help="Blind trials: what the diagnosis names of what was hidden, counted.",
@@ -15,7 +24,7 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode="markdown",
 )
-COMMANDS = (machine_commands, foreign, lung, slips, history, watch, calibrate)
+COMMANDS = (machine_commands, foreign, lung, slips, history, pairs, watch, calibrate)
 """Modules with a function register(app)."""
 for module in COMMANDS:
     module.register(app)

@@ -153,6 +153,8 @@ class Trial:
     seed: int
     loudness: float = 1.0
     multiple: float = 0.0
+    day: int = 0
+    """Of measuring: the same machine and instruments, other motions and noise."""
 
     @property
     def channels(self) -> dict[str, Channel]:
@@ -236,6 +238,8 @@ def write_trial(trial: Trial, out: Path | str, truth_path: Path | str) -> None:
     if truth_path.resolve().is_relative_to(out.resolve()):
         raise ValueError(f"the truth ({truth_path}) must lie outside the records' folder ({out})")
     for_records, for_salt, for_declared = seeds_of(trial.seed)[3:6]
+    for _ in range(trial.day):
+        for_records.spawn(len(trial.runs))
     records = {
         run.name: _record(trial, run.excited_by, child)
         for run, child in zip(trial.runs, for_records.spawn(len(trial.runs)), strict=True)

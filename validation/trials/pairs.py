@@ -1,0 +1,180 @@
+"""`./dev trials pairs`: a virtual machine measured on two days, and what `sms compare-diagnoses` says of the diagnoses.
+
+Between the days nothing happens, or one effect sets in, at one, two or three times its detection limit. The machine is
+drawn within what its rig file declares, and off from it by an imperfection; on the second day it makes other motions
+under other noise. Unlike `./dev trials history`, whose answers are drawn, this counts whole diagnoses.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import tempfile
+from collections.abc import Sequence
+from concurrent.futures import as_completed
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+from sms.demo.hidden import key_of
+from sms.diagnosis import diagnose
+from sms.diagnosis.result import as_json
+from sms.history import Answer, compare, read_answer
+from sms.io.json_files import json_text
+from sms.io.write import write_text_atomically
+
+from validation.trials.processes import processes
+from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
+from validation.twins.draw import RIGS, Trial, draw_trial, drawable, size_of, write_trial
+
+TIMES = (0.0, 1.0, 2.0, 3.0)
+"""Its detection limit, by which the effect has set in."""
+WHEN = datetime(2026, 1, 15, tzinfo=UTC)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """What was said of one pair."""
+
+    kind: str
+    seed: int
+    imperfection: float
+    hidden: str
+    """The effect that may have set in."""
+    times: float
+    limit: float
+    changed: list[list[str]]
+    """The explanations of each cause that is called changed; of a number of the declared model, its name."""
+    verdicts: tuple[str, str]
+
+    @property
+    def called(self) -> bool:
+        return bool(self.changed)
+
+    @property
+    def wrong(self) -> bool:
+        """Something is called changed that has not, or under names of which none is right."""
+        return any(self.times == 0.0 or self.hidden not in names for names in self.changed)
+
+
+def pairs_of(kind: str, seed: int, imperfection: float) -> list[Pair]:
+    """A machine's first day against a second one of each size."""
+    well = draw_trial(kind, seed, "none", 1.0, imperfection)
+    rng = np.random.default_rng([seed, 18])
+    excited = "+".join(run.excited_by for run in well.runs if run.role == "identify")
+    seen = [e for e in drawable(kind, excited, max(TIMES)) if e.drawn_from is None]
+    effect = seen[int(rng.integers(len(seen)))]
+    sign = float(rng.choice([-1.0, 1.0])) if effect.signed else effect.sense
+    limit = size_of(kind, excited, effect, 1.0, well.loudness, 0.0)[0]
+    first = _diagnosed(well, "first")
+    pairs = []
+    for times in TIMES:
+        truth = well.truth if times == 0.0 else effect.hidden_in(well.truth, sign * times * limit)
+        second = _diagnosed(replace(well, truth=truth, day=1), "second")
+        pairs.append(
+            Pair(
+                kind,
+                seed,
+                imperfection,
+                effect.key,
+                times,
+                sign * limit,
+                _changed(first, second),
+                (first.verdict, second.verdict),
+            )
+        )
+    return pairs
+
+
+def _diagnosed(trial: Trial, name: str) -> Answer:
+    os.environ.setdefault("SMS_THREADS", "1")
+    with tempfile.TemporaryDirectory() as folder:
+        records = Path(folder) / "records"
+        write_trial(trial, records, Path(folder) / "sealed" / "truth.json")
+        return read_answer(as_json(diagnose(records / "rig.toml", seed=trial.seed)), name, WHEN)
+
+
+def _changed(first: Answer, second: Answer) -> list[list[str]]:
+    explanations = {
+        member.key: [key_of(m.effect, m.signal) for m in members]
+        for answer in (first, second)
+        for members in answer.causes
+        for member in members
+    }
+    return [
+        explanations.get(item.key, [item.parameter])
+        for item in compare(first, second).items
+        if item.change == "changed"
+    ]
+
+
+def shares(pairs: Sequence[Pair]) -> list[Share]:
+    """Called changed: wrongly, by size, and of these under the right name."""
+    found = [at_most("unchanged pair called changed", [p.called for p in pairs if p.times == 0.0])]
+    for times in TIMES[1:]:
+        of_size = [p for p in pairs if p.times == times]
+        found.append(
+            at_least(f"changed by {times:g} x its limit, called so", [p.called for p in of_size])
+        )
+    changed = [p.wrong for p in pairs if p.times > 0.0 and p.called]
+    return [*found, at_most("called changed, under no right name or beside another", changed)]
+
+
+# ---- the command -----------------------------------------------------------------------------------
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(pairs)
+
+
+def pairs(
+    kind: Annotated[str, typer.Argument(metavar="RIG", help="bench, platform or tank.")],
+    count: Annotated[
+        int, typer.Option(min=1, help="Machines; each gives an unchanged pair and three changed.")
+    ] = 50,
+    seed: Annotated[int | None, typer.Option(help="By default drawn, and printed.")] = None,
+    imperfect: Annotated[
+        float, typer.Option(min=0.0, max=4.0, help="% by which machines are off from the model.")
+    ] = 1.0,
+    workers: Annotated[int, typer.Option(min=1)] = os.cpu_count() or 1,
+    as_json_file: Annotated[Path | None, typer.Option("--json", help="Also to this file.")] = None,
+) -> None:
+    """Machines on two days, diagnosed and compared: what is called changed. Five diagnoses a machine; a tank takes seconds."""
+    if kind not in RIGS:
+        raise typer.BadParameter(f"'{kind}' is no rig: {', '.join(RIGS)}")
+    first = secrets.randbelow(10**6) if seed is None else seed
+    console = Console()
+    console.print(f"seed {first}, {count} machines, {imperfect:g} % imperfect", style="dim")
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    found: list[Pair] = []
+    with processes(workers) as pool:
+        jobs = [pool.submit(pairs_of, kind, first + i, imperfect) for i in range(count)]
+        for number, job in enumerate(as_completed(jobs), 1):
+            found += job.result()
+            said = found[-len(TIMES) :]
+            console.print(
+                f"{number} of {count}: seed {said[0].seed}, {said[0].hidden}: "
+                + ", ".join(f"{p.times:g} x {'changed' if p.called else '-'}" for p in said),
+                soft_wrap=True,
+            )
+            for pair in said:
+                if pair.wrong:
+                    console.print(
+                        f"  {pair.times:g} x: {pair.verdicts} {pair.changed}", soft_wrap=True
+                    )
+    found.sort(key=lambda p: (p.seed, p.times))
+    counted = shares(found)
+    console.print(share_table(counted))
+    if as_json_file is not None:
+        content: dict[str, Any] = {
+            "seed": first,
+            "imperfection": imperfect,
+            "pairs": [asdict(p) for p in found],
+            "shares": shares_as_dicts(counted),
+        }
+        write_text_atomically(as_json_file, json_text("trials", content))
