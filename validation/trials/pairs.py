@@ -144,7 +144,7 @@ def pairs(
     workers: Annotated[int, typer.Option(min=1)] = os.cpu_count() or 1,
     as_json_file: Annotated[Path | None, typer.Option("--json", help="Also to this file.")] = None,
 ) -> None:
-    """Machines on two days, diagnosed and compared: what is called changed. Five diagnoses a machine; a tank takes seconds."""
+    """Machines on two days, diagnosed and compared: what is called changed. A tank takes half a minute."""
     if kind not in RIGS:
         raise typer.BadParameter(f"'{kind}' is no rig: {', '.join(RIGS)}")
     first = secrets.randbelow(10**6) if seed is None else seed
