@@ -272,3 +272,13 @@ def test_a_screw_pitch_is_found_in_what_is_left_and_none_where_there_is_none(
     healthy = diagnose(make_rig(without)).remainder
     assert healthy is not None
     assert healthy.ripple is None
+
+
+def test_a_time_that_jumps_by_weeks_is_refused() -> None:
+    """Seen: the even grid on which a velocity is derived took all of the memory."""
+    time = np.arange(0.0, 10.0, 0.01)
+    time[500:] += 1e6
+    with pytest.raises(InputError, match=r"gap behind 4\.99 s; split the record"):
+        derive_motion(time, np.zeros(1000))
+    time[500:] -= 1e6 - 5.0
+    assert np.isfinite(derive_motion(time, np.zeros(1000))[0]).all()

@@ -27,6 +27,8 @@ from sms.io.rig import Rig
 
 SMOOTHING_TIME = 0.15
 """s: length of the local parabola from which velocity and acceleration are taken."""
+MOST_GAPS = 10.0
+"""Times its samples that a record may last at their median step: beyond, it is mostly gaps."""
 SHORTEST_STROKE = 10
 """samples: what moves one way for less is a jerk at the reversal, not a stroke."""
 
@@ -50,6 +52,12 @@ def derive_motion(time: Array, position: Array) -> tuple[Array, Array]:
     (loggers jitter), and read back at the measured times.
     """
     step = float(np.median(np.diff(time)))
+    if (duration := float(time[-1] - time[0])) > MOST_GAPS * step * len(time):
+        widest = int(np.argmax(np.diff(time)))
+        raise InputError(
+            f"{len(time)} samples, {step:g} s apart in the median, span {duration:g} s: a velocity cannot be derived "
+            f"across the gap behind {time[widest]:g} s; split the record there, or repair its time"
+        )
     grid = np.arange(time[0], time[-1] + step, step)
     window = max(5, 2 * round(0.5 * SMOOTHING_TIME / step) + 1)
     if window > len(grid):
