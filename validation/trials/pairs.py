@@ -22,11 +22,13 @@ import typer
 from rich.console import Console
 from sms.demo.hidden import key_of
 from sms.diagnosis import diagnose
+from sms.diagnosis.effects.catalogue import catalogue
 from sms.diagnosis.result import as_json
 from sms.history import Answer, compare, read_answer
 from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
+from validation.trials.answers import key_of as of_effect
 from validation.trials.processes import processes
 from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 from validation.twins.draw import RIGS, Trial, draw_trial, drawable, size_of, write_trial
@@ -48,7 +50,7 @@ class Pair:
     times: float
     limit: float
     changed: list[list[str]]
-    """The explanations of each cause that is called changed; of a number of the declared model, its name."""
+    """The members of each cause that is called changed; a number of the declared model, with effects that shift it."""
     verdicts: tuple[str, str]
 
     @property
@@ -83,7 +85,7 @@ def pairs_of(kind: str, seed: int, imperfection: float) -> list[Pair]:
                 effect.key,
                 times,
                 sign * limit,
-                _changed(first, second),
+                _changed(kind, first, second),
                 (first.verdict, second.verdict),
             )
         )
@@ -98,18 +100,22 @@ def _diagnosed(trial: Trial, name: str) -> Answer:
         return read_answer(as_json(diagnose(records / "rig.toml", seed=trial.seed)), name, WHEN)
 
 
-def _changed(first: Answer, second: Answer) -> list[list[str]]:
+def _changed(kind: str, first: Answer, second: Answer) -> list[list[str]]:
+    """What is called changed: of a cause its members, of a number of the declared model the effects that shift it."""
     explanations = {
         member.key: [key_of(m.effect, m.signal) for m in members]
         for answer in (first, second)
         for members in answer.causes
         for member in members
     }
-    return [
-        explanations.get(item.key, [item.parameter])
-        for item in compare(first, second).items
-        if item.change == "changed"
-    ]
+    found = []
+    for item in compare(first, second).items:
+        if item.change == "changed" and item.about == "cause":
+            found.append(explanations[item.key])
+        elif item.change == "changed":
+            shifts = [of_effect(e) for e in catalogue(kind) if item.parameter in e.parameters]
+            found.append([item.parameter, *shifts])
+    return found
 
 
 def shares(pairs: Sequence[Pair]) -> list[Share]:
