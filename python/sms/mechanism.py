@@ -290,7 +290,7 @@ class Mechanism:
                 )
             if leg.kind == "fixed" and not (leg.length and leg.length > 0.0):
                 raise InputError(f"{self.name}, leg {number}: a rod needs a length above 0 m")
-            if leg.normal is not None and not np.linalg.norm(leg.normal) > 0.0:
+            if leg.normal is not None and not sum(part * part for part in leg.normal) > 0.0:
                 raise InputError(
                     f"{self.name}, leg {number}: normal is no direction; its length is 0"
                 )

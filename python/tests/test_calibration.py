@@ -394,3 +394,13 @@ def test_a_distance_out_of_all_range(
         return
     with pytest.raises(InputError, match=r"pose 1, column 'distance_tape .m.': .* more than any"):
         load_poses(rig)
+
+
+def test_more_poses_than_anybody_measures_are_refused(machine: Machine, tmp_path: Path) -> None:
+    """Seen: 60,000 took minutes."""
+    rig = _write(tmp_path, machine.rig, "")
+    head, *lines = (tmp_path / "poses.csv").read_text().splitlines()
+    many = lines * (20_001 // len(lines) + 1)
+    (tmp_path / "poses.csv").write_text("\n".join([head, *many]) + "\n")
+    with pytest.raises(InputError, match="poses are more than are calibrated at once"):
+        load_poses(rig)

@@ -34,6 +34,8 @@ TOLERANCES = {
 LARGEST = {"m": 1e3, "rad": 2.0 * np.pi}
 """What a pose may read at most: far more than any platform has, and squares that are numbers still."""
 LEAST_POSES = 6
+MOST_POSES = 20_000
+"""Half a minute; far more than anybody measures."""
 KEPT_ASIDE = 5
 """Every so many poses one is a validation pose, where no file of them is named."""
 
@@ -171,6 +173,10 @@ def _read(file: Path, distances: Sequence[Distance]) -> Poses:
         raise InputError(f"{file}: no table of poses ({problem})") from None
     channels = CHANNELS | {DISTANCE + d.name: "m" for d in distances}
     units = dict.fromkeys(EXTENSIONS, "m") | channels
+    if len(cells) > MOST_POSES:
+        raise InputError(
+            f"{file}: {len(cells)} poses are more than are calibrated at once ({MOST_POSES}); leave some out"
+        )
     columns: dict[str, Array] = {}
     for header in map(str, cells.columns):
         name, unit = split_column_name(header)
