@@ -178,13 +178,12 @@ def test_a_wrong_file_is_refused_in_one_sentence(
 
 
 @pytest.mark.filterwarnings("error")
-def test_a_normal_beyond_all_range_is_refused_without_a_warning(tmp_path: Path) -> None:
+def test_a_normal_beyond_all_range_brings_no_warning(tmp_path: Path) -> None:
     """Seen: numpy warned of the overflow of its length beside the sentence."""
     text = (Path(sms.__file__).parent / "mechanisms" / "three_rps.toml").read_text()
     file = tmp_path / "m.toml"
     file.write_text(text.replace("normal = [0.0, 1.0, 0.0]", "normal = [0.0, 1e308, 0.0]", 1))
-    with pytest.raises(InputError):
-        load_mechanism(file)
+    assert load_mechanism(file).name == "3-RPS"  # at work it has no pose, which is said
 
 
 def test_what_is_shipped_loads_and_can_stand_at_home() -> None:
