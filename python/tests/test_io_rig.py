@@ -122,6 +122,7 @@ def test_signals_and_data_are_read_in_si(tmp_path: Path) -> None:
     # numbers that nothing can be calculated with
     ('"0.02 mm"', "nan", ["bore_diameter.uncertainty", "must be a finite number"]),
     ('"0.02 mm"', "1" + 400 * "0", ["bore_diameter.uncertainty", "must be a finite number"]),
+    ('"0.02 mm"', '"1e-320 m"', ["bore_diameter", "write 0 where the value is known exactly"]),
     ('"0.02 mm"', '"1e308 m"', ["bore_diameter", "wider than the whole allowed range, 0.001 to 1 m"]),
     ('"25 mm"', 5000 * "9", ["a number in it has thousands of digits"]),
     ("[parameters]", f"x = {999 * '['}{999 * ']'}\n[parameters]", ["nested hundreds deep"]),

@@ -14,6 +14,9 @@ from sms.io.toml_tables import checked, parse_toml, read_text
 from sms.io.units import interval_to_si, to_si
 from sms.parameters import LEG_PARAMETERS, PARAMETERS, Parameter
 
+LEAST_SHARE = 1e-15
+"""Of a parameter's range: the least uncertainty but 0. Its square has to be a number. Numerics."""
+
 
 @dataclass(frozen=True)
 class Declaration:
@@ -119,6 +122,11 @@ def declaration(
                 f"{where}: an uncertainty of {table.uncertainty} is wider than the whole allowed range, "
                 f"{parameter.lower:g} to {parameter.upper:g}{unit_after(parameter)}; write fit = true where nothing is "
                 "known"
+            )
+        if 0.0 < uncertainty < LEAST_SHARE * (parameter.upper - parameter.lower):
+            raise InputError(
+                f"{where}: an uncertainty of {table.uncertainty} is beyond what can be calculated with; write 0 where "
+                "the value is known exactly"
             )
     return Declaration(value, uncertainty, table.fit)
 
