@@ -10,6 +10,7 @@ from plant_support import fitted_baseline
 from sms import Params, _core, simulate_tank
 from sms.diagnosis import diagnose
 from sms.diagnosis.adequacy.systematic_error import ACCURACY
+from sms.diagnosis.design.still_hidden import still_hidden
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.localisation.signal_functions import (
     hats,
@@ -19,6 +20,7 @@ from sms.diagnosis.localisation.signal_functions import (
     through_plant,
 )
 from sms.diagnosis.preparation import make_data
+from sms.diagnosis.selection.identifiability import identifiable
 from sms.diagnosis.selection.stepwise import try_effects
 from sms.estimation.discrepancy import KNOTS
 from sms.io import write_record
@@ -151,3 +153,23 @@ def test_every_run_of_the_menu_can_be_made(tmp_path: Path) -> None:
         assert np.ptp(pressure) > 2e4, experiment.title
         assert pressure.min() > 8e4
         assert pressure.max() < 4.9e5
+
+
+def test_what_is_not_named_has_an_estimate_all_the_same(tmp_path: Path) -> None:
+    """Of a leak too small to be worth a word, and of what is not there."""
+    leak = 1e-9
+    for seed, truth in ((21, {}), (22, {"chamber_leakage_lower": leak})):
+        folder = tmp_path / f"{seed}"
+        folder.mkdir()
+        fitted, data = fitted_baseline(write_tank(folder, seed, truth))
+        able, _ = identifiable(fitted, data, effects_of(data.rig))
+        found = {h.parameter: h for h in still_hidden(fitted, data, able)}
+        assert found["tank_volume"].estimate is None  # fitted anyway, within what is declared
+        shift = found["chamber_leakage_lower"]
+        assert shift.estimate is not None and shift.standard_error is not None
+        assert abs(shift.estimate - truth.get("chamber_leakage_lower", 0.0)) < (
+            4.0 * shift.standard_error
+        )
+        assert shift.standard_error < shift.size / 2.0
+        if truth:
+            assert leak < shift.size and shift.estimate > 2.0 * shift.standard_error

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from cli_support import sms
 from plant_support import LEAK as BENCH_LEAK
-from plant_support import write_bench
+from plant_support import with_known_map, write_bench
 from sms.io.json_files import SCHEMA_VERSIONS
 from test_cli_diagnose import refused
 from test_diagnosis_cylinder import make_rig
@@ -234,6 +234,7 @@ def test_a_leak_that_grows_on_a_bench_is_followed(tmp_path: Path) -> None:
         folder = tmp_path / f"{number}"
         folder.mkdir()
         rig = write_bench(folder, 10 + number, {"piston_leakage": leak} if leak else {})
+        rig = with_known_map(rig)
         text = rig.read_text()
         assert "[rig]" in text
         rig.write_text(text.replace("[rig]", f"[rig]\nmeasured = 2026-0{number + 1}-15", 1))

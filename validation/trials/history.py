@@ -80,7 +80,8 @@ def drawn_answer(
             )
         else:
             limit = {"parameter": e.parameter, "size": DETECTION * error, "unit": e.unit}
-            hidden.append(common | limit)
+            best = {"estimate": size, "standard_error": error}
+            hidden.append(common | limit | best)
     verdict = ("no-evidence", "cause")[len(causes)] if len(causes) < 2 else "combination"
     model = [
         _estimate(name, rng.normal(value, scale * error), scale * error, unit, value)

@@ -362,10 +362,13 @@ def sensitivities(fitted: Fitted, runs: Runs, names: list[str]) -> Array:
     return project_off(jacobian[:, len(nuisance) :], jacobian[:, : len(nuisance)])
 
 
-def nuisance_of(fitted: Fitted, white: bool = False) -> Nuisance:
-    """The free parameters that are not held by a bound, at the solution; their sensitivities whitened if asked for."""
+def nuisance_of(fitted: Fitted, white: bool = False, held: bool = False) -> Nuisance:
+    """The free parameters that are not held by a bound, at the solution; their sensitivities whitened if asked for.
+
+    held: those too that are held by one.
+    """
     h = fitted.hypothesis
-    movable = fitted.movable
+    movable = list(h.free) if held else fitted.movable
     slopes = fitted.fit.jacobian[:, [list(h.free).index(n) for n in movable]].astype(np.float64)
     return Nuisance(
         movable,

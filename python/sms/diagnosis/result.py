@@ -111,6 +111,9 @@ class StillHidden:
     unit: str
     plausible: float
     """The largest plausible shift."""
+    estimate: float | None = None
+    """The shift by which these records would be fitted best, to first order; None where it is fitted anyway."""
+    standard_error: float | None = None
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,8 @@ class Answer:
     """The fit of the declared model, without any cause."""
     limits: Mapping[str, float]
     """Explanation.key -> the shift of its first parameter from which these records would have shown it."""
+    unnamed: Mapping[str, Estimate]
+    """Explanation.key -> the shift of its first parameter that would fit these records best; of what is not named."""
     not_testable: Mapping[str, str]
     """Explanation.key -> why these records say nothing of it."""
     declared: Mapping[str, Any]
@@ -209,6 +211,7 @@ def _answer(content: dict[str, Any], text: str, source: str, file_changed: datet
         causes=causes,
         model=tuple(_estimate(p) for p in content.get("baseline") or ()),
         limits=_limits(content),
+        unnamed=_unnamed(content),
         not_testable={_key(n): _text(n["reason"]) for n in content.get("not_testable") or ()},
         declared=dict(content.get("declared") or {}),
         inputs=dict(content.get("inputs") or {}),
@@ -254,6 +257,18 @@ def _number(value: object) -> float:
 
 def _limits(content: Mapping[str, Any]) -> dict[str, float]:
     return {_key(h): _number(h["size"]) for h in content.get("still_hidden") or ()}
+
+
+def _unnamed(content: Mapping[str, Any]) -> dict[str, Estimate]:
+    """As shifts: neutral is 0."""
+    found = {}
+    for hidden in content.get("still_hidden") or ():
+        size = _number(hidden.get("estimate"))
+        error = _number(hidden.get("standard_error"))
+        if math.isfinite(size) and error > 0.0:
+            parameter, unit = _text(hidden["parameter"]), _text(hidden["unit"])
+            found[_key(hidden)] = Estimate(parameter, unit, size, error, 0.0)
+    return found
 
 
 def _key(found: Mapping[str, Any]) -> str:

@@ -1,8 +1,12 @@
 """Two diagnoses of one machine: what changed, what did not, and what cannot be told, by a test and not by eye.
 
-A size that both have, d = b - a, is held against its standard error sqrt(se_a^2 + se_b^2). Of an effect that one of
-them does not name, that one's estimate is unknown, but it is not beyond the size from which its records would have
-shown it, the limit L. So only what goes beyond L counts: with the size s that the other names, (|s| - L) over
+A size that both have, d = b - a, is held against its standard error sqrt(se_a^2 + se_b^2). A diagnosis that names
+nothing states of each effect the shift that would have fitted its records best; where the other one names an effect,
+it is compared with that. Being named by one of the two selects such a pair: of an effect at its limit every second
+pair is of this sort, and the differences that are large are among them. So their p-value counts twice.
+
+Where there is no such estimate, it is only known that the effect is not beyond the size from which the records would
+have shown it, the limit L. So only what goes beyond L counts: with the size s that the other names, (|s| - L) over
 sqrt(se^2 + (L / 3)^2), L being three standard errors. This holds its level although it is the size that decides what is
 named (a comparison with zero would not: of an effect at its limit every second diagnosis names it, and never one that
 looks small). The estimates of the declared model's own parameters are compared where neither names a cause: a cause
@@ -66,6 +70,8 @@ class Item:
     """In words, what stands behind it; empty where the numbers say all."""
     absent: Literal["a", "b", ""] = ""
     """The diagnosis that does not name it."""
+    selected: bool = False
+    """It is compared since one of the two names it: its p-value is that of the difference twice."""
     p_value: float = math.nan
     p_holm: float = math.nan
     matters: float = 0.0
@@ -196,6 +202,11 @@ def _two_estimates(
 def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool) -> Item:
     """An effect that only one of the two names, `own`; `other` does not."""
     size = named.estimates[0]
+    if (unnamed := _unnamed(named, other)) is not None:
+        a, b = (unnamed, size) if named_in_b else (size, unnamed)
+        reason = f"{other.source} does not name it; the size that would fit its records best"
+        item = _two_estimates("cause", named.key, named.title, a, b, abs(size.shift), reason)
+        return replace(item, absent="a" if named_in_b else "b", selected=True)
     sign = 1.0 if named_in_b else -1.0
     limit, reason = limit_of(named, own, other)
     neutral = Estimate(size.parameter, size.unit, size.neutral, limit / DETECTION, size.neutral)
@@ -212,6 +223,21 @@ def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool)
         beyond / error, "cannot be told", reason, matters=abs(size.shift),
         absent="a" if named_in_b else "b",
     )  # fmt: skip
+
+
+def _unnamed(named: Explanation, other: Answer) -> Estimate | None:
+    """What the other diagnosis states of an effect that it does not name, or of the declared parameter that it shifts;
+    None where it does not say."""
+    size = named.estimates[0]
+    if not other.judges:
+        return None
+    if (shift := other.unnamed.get(named.key)) is not None:
+        value = size.neutral + shift.value
+        return replace(shift, parameter=size.parameter, value=value, neutral=size.neutral)
+    if other.causes:
+        return None
+    model = next((e for e in other.model if e.parameter == size.parameter), None)
+    return model if model is not None and math.isfinite(model.standard_error) else None
 
 
 def limit_of(named: Explanation, own: Answer, other: Answer) -> tuple[float, str]:
@@ -267,7 +293,10 @@ def _model(a: Answer, b: Answer) -> Iterator[Item]:
 
 def judged(items: Sequence[Item]) -> list[Item]:
     """The items with their p values and what follows; their `smallest` is a standard error until then."""
-    p_values = [two_sided(i.z) if math.isfinite(i.z) else math.nan for i in items]
+    p_values = [
+        min(two_sided(i.z) * (2.0 if i.selected else 1.0), 1.0) if math.isfinite(i.z) else math.nan
+        for i in items
+    ]
     seen = seen_from(int(np.isfinite(p_values).sum()))
     out = []
     for item, p, corrected in zip(items, p_values, holm(p_values), strict=True):
