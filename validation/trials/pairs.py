@@ -1,6 +1,7 @@
 """`./dev trials pairs`: a virtual machine measured on two days, and what `sms compare-diagnoses` says of the diagnoses.
 
-Between the days nothing happens, or one effect sets in, at one, two or three times its detection limit. The machine is
+Between the days nothing happens, or one effect sets in, at one, two or three times its detection limit; or it is there on
+both days, at one or three times its limit. The machine is
 drawn within what its rig file declares, and off from it by an imperfection; on the second day it makes other motions
 under other noise. Unlike `./dev trials history`, whose answers are drawn, this counts whole diagnoses.
 """
@@ -33,8 +34,8 @@ from validation.trials.processes import processes
 from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 from validation.twins.draw import RIGS, Trial, draw_trial, drawable, size_of, write_trial
 
-TIMES = (0.0, 1.0, 2.0, 3.0)
-"""Its detection limit, by which the effect has set in."""
+TIMES = ((0.0, 0.0), (1.0, 1.0), (3.0, 3.0), (0.0, 1.0), (0.0, 2.0), (0.0, 3.0))
+"""Times its detection limit, of the effect on the first and on the second day."""
 WHEN = datetime(2026, 1, 15, tzinfo=UTC)
 
 
@@ -47,7 +48,9 @@ class Pair:
     imperfection: float
     hidden: str
     """The effect that may have set in."""
-    times: float
+    before: float
+    after: float
+    """Times its limit."""
     limit: float
     changed: list[list[str]]
     """The members of each cause that is called changed; a number of the declared model, with effects that shift it."""
@@ -60,7 +63,8 @@ class Pair:
     @property
     def wrong(self) -> bool:
         """Something is called changed that has not, or under names of which none is right."""
-        return any(self.times == 0.0 or self.hidden not in names for names in self.changed)
+        steady = self.before == self.after
+        return any(steady or self.hidden not in names for names in self.changed)
 
 
 def pairs_of(kind: str, seed: int, imperfection: float) -> list[Pair]:
@@ -68,28 +72,32 @@ def pairs_of(kind: str, seed: int, imperfection: float) -> list[Pair]:
     well = draw_trial(kind, seed, "none", 1.0, imperfection)
     rng = np.random.default_rng([seed, 18])
     excited = "+".join(run.excited_by for run in well.runs if run.role == "identify")
-    seen = [e for e in drawable(kind, excited, max(TIMES)) if e.drawn_from is None]
+    seen = [e for e in drawable(kind, excited, max(max(TIMES))) if e.drawn_from is None]
     effect = seen[int(rng.integers(len(seen)))]
     sign = float(rng.choice([-1.0, 1.0])) if effect.signed else effect.sense
     limit = size_of(kind, excited, effect, 1.0, well.loudness, 0.0)[0]
-    first = _diagnosed(well, "first")
-    pairs = []
-    for times in TIMES:
-        truth = well.truth if times == 0.0 else effect.hidden_in(well.truth, sign * times * limit)
-        second = _diagnosed(replace(well, truth=truth, day=1), "second")
-        pairs.append(
-            Pair(
-                kind,
-                seed,
-                imperfection,
-                effect.key,
-                times,
-                sign * limit,
-                _changed(kind, first, second),
-                (first.verdict, second.verdict),
-            )
+
+    def of(times: float, day: int) -> Answer:
+        size = sign * times * limit
+        truth = effect.hidden_in(well.truth, size) if times > 0.0 else well.truth
+        return _diagnosed(replace(well, truth=truth, day=day), f"day {day + 1}")
+
+    first = {times: of(times, 0) for times in sorted({before for before, _ in TIMES})}
+    second = {times: of(times, 1) for times in sorted({after for _, after in TIMES})}
+    return [
+        Pair(
+            kind,
+            seed,
+            imperfection,
+            effect.key,
+            before,
+            after,
+            sign * limit,
+            _changed(kind, first[before], second[after]),
+            (first[before].verdict, second[after].verdict),
         )
-    return pairs
+        for before, after in TIMES
+    ]
 
 
 def _diagnosed(trial: Trial, name: str) -> Answer:
@@ -120,13 +128,15 @@ def _changed(kind: str, first: Answer, second: Answer) -> list[list[str]]:
 
 def shares(pairs: Sequence[Pair]) -> list[Share]:
     """Called changed: wrongly, by size, and of these under the right name."""
-    found = [at_most("unchanged pair called changed", [p.called for p in pairs if p.times == 0.0])]
-    for times in TIMES[1:]:
-        of_size = [p for p in pairs if p.times == times]
-        found.append(
-            at_least(f"changed by {times:g} x its limit, called so", [p.called for p in of_size])
-        )
-    changed = [p.wrong for p in pairs if p.times > 0.0 and p.called]
+    found = []
+    for before, after in TIMES:
+        called = [p.called for p in pairs if (p.before, p.after) == (before, after)]
+        if before == after:
+            there = f", {after:g} x its limit on both days" if after else ", nothing there"
+            found.append(at_most(f"unchanged pair called changed{there}", called))
+        else:
+            found.append(at_least(f"changed by {after:g} x its limit, called so", called))
+    changed = [p.wrong for p in pairs if p.before != p.after and p.called]
     return [*found, at_most("called changed, under no right name or beside another", changed)]
 
 
@@ -141,7 +151,8 @@ def register(app: typer.Typer) -> None:
 def pairs(
     kind: Annotated[str, typer.Argument(metavar="RIG", help="bench, platform or tank.")],
     count: Annotated[
-        int, typer.Option(min=1, help="Machines; each gives an unchanged pair and three changed.")
+        int,
+        typer.Option(min=1, help="Machines; each gives three unchanged pairs and three changed."),
     ] = 50,
     seed: Annotated[int | None, typer.Option(help="By default drawn, and printed.")] = None,
     imperfect: Annotated[
@@ -165,15 +176,18 @@ def pairs(
             said = found[-len(TIMES) :]
             console.print(
                 f"{number} of {count}: seed {said[0].seed}, {said[0].hidden}: "
-                + ", ".join(f"{p.times:g} x {'changed' if p.called else '-'}" for p in said),
+                + ", ".join(
+                    f"{p.before:g} to {p.after:g} x {'changed' if p.called else '-'}" for p in said
+                ),
                 soft_wrap=True,
             )
             for pair in said:
                 if pair.wrong:
                     console.print(
-                        f"  {pair.times:g} x: {pair.verdicts} {pair.changed}", soft_wrap=True
+                        f"  {pair.before:g} to {pair.after:g} x: {pair.verdicts} {pair.changed}",
+                        soft_wrap=True,
                     )
-    found.sort(key=lambda p: (p.seed, p.times))
+    found.sort(key=lambda p: p.seed)
     counted = shares(found)
     console.print(share_table(counted))
     if as_json_file is not None:
