@@ -1,9 +1,9 @@
 """`./dev trials pairs`: a virtual machine measured on two days, and what `sms compare-diagnoses` says of the diagnoses.
 
-Between the days nothing happens, or one effect sets in, at one, two or three times its detection limit; or it is there on
-both days, at one or three times its limit. The machine is
-drawn within what its rig file declares, and off from it by an imperfection; on the second day it makes other motions
-under other noise. Unlike `./dev trials history`, whose answers are drawn, this counts whole diagnoses.
+Between the days nothing happens, or one effect sets in, at one, two or three times its detection limit; or it is there
+on both days, at one or three times its limit. The machine is drawn within what its rig file declares, and off from it
+by an imperfection; on the second day it makes other motions under other noise. Unlike `./dev trials history`, whose
+answers are drawn, this counts whole diagnoses.
 """
 
 from __future__ import annotations
