@@ -204,7 +204,7 @@ def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool)
     size = named.estimates[0]
     if (unnamed := _unnamed(named, other)) is not None:
         a, b = (unnamed, size) if named_in_b else (size, unnamed)
-        reason = f"{other.source} does not name it; the size that would fit its records best"
+        reason = f"{other.source} does not name it; in brackets is the size that would fit its records best"
         item = _two_estimates("cause", named.key, named.title, a, b, abs(size.shift), reason)
         return replace(item, absent="a" if named_in_b else "b", selected=True)
     sign = 1.0 if named_in_b else -1.0

@@ -21,13 +21,18 @@ def _row(item: Item) -> tuple[str, ...]:
     a, b, low, high, smallest = format_aligned(numbers, item.unit, item.parameter)
     return (
         capital(item.title or words(item.parameter)),
-        "not named" if item.absent == "a" else a,
-        "not named" if item.absent == "b" else b,
+        _not_named(item, a) if item.absent == "a" else a,
+        _not_named(item, b) if item.absent == "b" else b,
         f"{low.partition(' ')[0]} to {high}" if math.isfinite(item.low) else "not known",
         smallest,
         format_p_value(item.p_holm).removeprefix("p ").removeprefix("= "),
         item.change,
     )
+
+
+def _not_named(item: Item, estimate: str) -> str:
+    """With the size that its records would be fitted best by, where that is what is compared."""
+    return f"not named ({estimate})" if item.selected else "not named"
 
 
 def notes(found: Difference) -> list[str]:
