@@ -24,6 +24,7 @@ from rich.table import Table
 from scipy.stats import norm
 from sms.demo.hidden import key_of, said
 from sms.diagnosis import diagnose
+from sms.diagnosis.result import Cause, Member
 
 from validation.twins.cylinder import effects
 from validation.twins.cylinder.draw import draw, open_truth
@@ -62,7 +63,7 @@ class Outcome:
         """Whether the truth is within the stated 95 % interval; None where no size was stated."""
         if self.estimate is None or self.standard_error is None:
             return None
-        return abs(self.estimate - self.value) <= norm.ppf(0.975) * self.standard_error
+        return bool(abs(self.estimate - self.value) <= norm.ppf(0.975) * self.standard_error)
 
     @property
     def said(self) -> str:
@@ -79,15 +80,9 @@ def run_trial(seed: int, effect: str | None = None, multiple: float = 3.0) -> Ou
         truth = open_truth(sealed, records)
     hidden = key_of(truth["effect"], truth["signal"])
     named = tuple(map(tuple, said(answer)))
-    found = next(
-        (
-            m.parameters[0]
-            for cause in answer.causes
-            for m in (cause, *cause.alternatives)
-            if key_of(m.effect, m.signal) == hidden
-        ),
-        None,
-    )
+    members: list[Cause | Member] = [*answer.causes]
+    members += [m for cause in answer.causes for m in cause.alternatives]
+    found = next((m.parameters[0] for m in members if key_of(m.effect, m.signal) == hidden), None)
     size = (None, None) if found is None else (found.value, found.standard_error)
     return Outcome(seed, hidden, truth["value"], answer.verdict, named, *size)
 
