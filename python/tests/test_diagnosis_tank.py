@@ -156,7 +156,7 @@ def test_every_run_of_the_menu_can_be_made(tmp_path: Path) -> None:
 
 
 def test_what_is_not_named_has_an_estimate_all_the_same(tmp_path: Path) -> None:
-    """Of a leak too small to be worth a word, and of what is not there."""
+    """Of a leak that is not practically significant, and of none."""
     leak = 1e-9
     for seed, truth in ((21, {}), (22, {"chamber_leakage_lower": leak})):
         folder = tmp_path / f"{seed}"

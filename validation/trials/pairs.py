@@ -72,7 +72,9 @@ def pairs_of(kind: str, seed: int, imperfection: float) -> list[Pair]:
     well = draw_trial(kind, seed, "none", 1.0, imperfection)
     rng = np.random.default_rng([seed, 18])
     excited = "+".join(run.excited_by for run in well.runs if run.role == "identify")
-    seen = [e for e in drawable(kind, excited, max(max(TIMES))) if e.drawn_from is None]
+    seen = [
+        e for e in drawable(kind, excited, max(after for _, after in TIMES)) if e.drawn_from is None
+    ]
     effect = seen[int(rng.integers(len(seen)))]
     sign = float(rng.choice([-1.0, 1.0])) if effect.signed else effect.sense
     limit = size_of(kind, excited, effect, 1.0, well.loudness, 0.0)[0]
