@@ -26,6 +26,7 @@ does.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -373,9 +374,10 @@ def name_of(setting: Setting, effect: Effect) -> str:
 
 
 def case(setting: Setting, effect: Effect) -> ParameterSet:
-    """Heavy where a bench has shown it under that controller, and a platform under another."""
+    """Heavy where a bench has shown it under that controller, and a platform under another, or in another leg."""
     known = (setting.kind, setting.law) == ("platform", "state_feedback")
-    heavy = known and effect.controller is None
+    first_or_third = bool(re.search(r"(_| leg )[13]$", effect.signal or ""))
+    heavy = (known or first_or_third) and effect.controller is None
     marks = [pytest.mark.full] if heavy else []
     return pytest.param(setting, effect, id=name_of(setting, effect), marks=marks)
 

@@ -17,7 +17,7 @@ EVERY = 0.25
 
 
 class Terminal:
-    """Prints alarms and verdicts as they come; live: a view of the state below them."""
+    """Prints alarms, their verdicts and their ends as they come; live: a view of the state below them."""
 
     def __init__(self, console: Console, live: bool) -> None:
         self._console = console
@@ -25,6 +25,8 @@ class Terminal:
         self._next = 0.0
         self._said: set[tuple[str, object]] = set()
         self._work = ""
+        self._standing: int | None = None
+        """Number of the alarm that stands."""
 
     def __enter__(self) -> Terminal:
         if self._live is not None:
@@ -58,6 +60,11 @@ class Terminal:
         if status.verdict is not None:
             told = f"alarm {status.verdict.alarm}, diagnosed: {status.verdict.sentence}"
             self._once(("verdict", status.verdict.alarm), told, "bold")
+        standing = status.alarm.number if status.alarm is not None else None
+        if self._standing is not None and standing is None:
+            ended = f"alarm {self._standing} ended at {status.time:.0f} s"
+            self._once(("ended", self._standing), ended, "bold")
+        self._standing = standing
         self._draw(view(status))
 
     def _once(self, key: tuple[str, object], text: str, style: str) -> None:
