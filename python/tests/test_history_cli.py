@@ -15,6 +15,9 @@ import pytest
 from cli_support import sms
 from plant_support import LEAK as BENCH_LEAK
 from plant_support import with_known_map, write_bench
+from sms.history import read_answer
+from sms.history.course import courses_of
+from sms.history.declared import changes
 from sms.io.json_files import SCHEMA_VERSIONS
 from test_cli_diagnose import refused
 from test_diagnosis_cylinder import make_rig
@@ -264,3 +267,55 @@ def test_a_leak_that_grows_on_a_bench_is_followed(tmp_path: Path) -> None:
     assert sms(
         "compare-diagnoses", "out0/diagnosis.json", "out2/diagnosis.json", cwd=tmp_path
     ).stdout.startswith("Changed")
+
+
+def test_a_leak_is_followed_from_before_it_is_large_enough_to_be_named() -> None:
+    rng = np.random.default_rng(11)
+    answers = []
+    for number in range(12):
+        truth = {LEAK: 8.0 * max(number - 3, 0)}
+        when = BEGIN + timedelta(days=30.4 * number)
+        text = drawn_answer(rng, truth, when, named_from=30.0)
+        answers.append(read_answer(text, f"{number}", BEGIN))
+    (leak,) = (c for c in courses_of(answers, {}) if c.parameter == LEAK)
+    assert leak.first_named is not None and leak.first_named >= 7
+    assert leak.grows and leak.onset is not None
+    assert abs(leak.onset[0].number - 4) <= 1
+
+
+def test_what_went_away_is_told_by_its_estimate() -> None:
+    rng = np.random.default_rng(12)
+    answers = [
+        read_answer(drawn_answer(rng, {LEAK: size}, BEGIN, named_from=30.0), f"{number}", BEGIN)
+        for number, size in enumerate((0.0, 33.0, 0.0))
+    ]
+    (leak,) = courses_of(answers, {})[:1]
+    assert leak.appeared and leak.went_away
+
+
+def test_diagnoses_of_one_day_are_told_apart_by_the_time(tmp_path: Path) -> None:
+    rng = np.random.default_rng(13)
+    moments = (BEGIN, BEGIN + timedelta(days=1), BEGIN + timedelta(days=1, hours=2, minutes=5))
+    texts = [
+        drawn_answer(rng, {LEAK: size}, moment)
+        for moment, size in zip(moments, (0.0, 30.0, 0.0), strict=True)
+    ]
+    as_files(texts, tmp_path / "reports")
+    told = " ".join(sms("history", "m.sqlite", "--add", "reports", cwd=tmp_path).stdout.split())
+    assert "2026-01-15 " in told and "2026-01-15 00:00" not in told
+    assert "first named in the diagnosis of 2026-01-16 00:00." in told
+    assert "the diagnosis of 2026-01-16 02:05 would have shown it." in told
+
+
+def test_a_column_that_is_named_with_its_unit_is_no_change_of_the_rig_file() -> None:
+    rng = np.random.default_rng(14)
+    written = ({"column": "pressure [Pa]", "unit": None}, {"column": "pressure", "unit": "Pa"})
+    other = {"column": "pressure", "unit": "bar"}
+    answers = [
+        read_answer(
+            drawn_answer(rng, {}, declared={"signals": {"tank_pressure": source}}), "a", BEGIN
+        )
+        for source in (*written, other)
+    ]
+    assert changes(answers[0], answers[1]) == []
+    assert changes(answers[1], answers[2]) == ["[signals] tank_pressure unit: Pa → bar"]

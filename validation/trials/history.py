@@ -62,11 +62,13 @@ def drawn_answer(
     measured: datetime = BEGIN,
     scale: float = 1.0,
     miss: float = 0.0,
+    named_from: float = DETECTION,
     **more: Any,
 ) -> str:
     """A diagnosis.json. truth: parameter -> size in standard errors of its effect. scale: of all standard errors.
 
-    miss: share of causes beyond their limit that is not named. more: other keys of the JSON.
+    miss: share of causes beyond their limit that is not named. named_from: the limit, in standard errors; that of what
+    is practically significant is higher. more: other keys of the JSON.
     """
     causes, hidden = [], []
     for e in EFFECTS:
@@ -74,12 +76,12 @@ def drawn_answer(
         size = truth.get(e.parameter, 0.0) * e.error + rng.normal(0.0, error)
         common: dict[str, Any] = {"effect": e.effect, "signal": e.signal}
         common["title"] = e.effect.replace("_", " ")
-        if abs(size) > DETECTION * error and rng.uniform() >= miss:
+        if abs(size) > named_from * error and rng.uniform() >= miss:
             causes.append(
                 common | {"parameters": [_estimate(e.parameter, size, error, e.unit, 0.0)]}
             )
         else:
-            limit = {"parameter": e.parameter, "size": DETECTION * error, "unit": e.unit}
+            limit = {"parameter": e.parameter, "size": named_from * error, "unit": e.unit}
             best = {"estimate": size, "standard_error": error}
             hidden.append(common | limit | best)
     verdict = ("no-evidence", "cause")[len(causes)] if len(causes) < 2 else "combination"

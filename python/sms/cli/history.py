@@ -201,7 +201,7 @@ def print_history(found: History, console: Console) -> None:
     console.print(f"{found.machine.title}: {len(found.entries)} diagnoses", style="bold")
     rows = [
         (
-            e.measured[:10],
+            e.date,
             e.verdict,
             "; ".join(e.causes) or "-",
             "; ".join(e.changed_in_rig_file) or "-",

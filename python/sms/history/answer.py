@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -94,6 +94,20 @@ class Answer:
     def judges(self) -> bool:
         """Whether that no cause is named says something of the machine."""
         return self.verdict not in ("unknown", "data-fault")
+
+    def not_named(self, named: Explanation) -> Estimate | None:
+        """The estimate here of an effect that another diagnosis names: of its shift, or of the declared parameter that
+        it shifts. None where this one does not say it, or names other causes, with which it was not estimated."""
+        size = named.estimates[0]
+        if not self.judges:
+            return None
+        if (shift := self.unnamed.get(named.key)) is not None:
+            value = size.neutral + shift.value
+            return replace(shift, parameter=size.parameter, value=value, neutral=size.neutral)
+        if self.causes:
+            return None
+        model = next((e for e in self.model if e.parameter == size.parameter), None)
+        return model if model is not None and math.isfinite(model.standard_error) else None
 
 
 def read_answers(places: Iterable[Path]) -> list[Answer]:

@@ -42,6 +42,8 @@ class Point:
     high: float
     """95 percent interval; of a cause that is not named, what its records leave possible."""
     state: State
+    limit: float | None = None
+    """Of what is not named: its shift might be this large; None: the value is an estimate."""
 
 
 @dataclass(frozen=True)
@@ -80,15 +82,18 @@ class Course:
 
     @property
     def went_away(self) -> bool:
-        """Whether the last diagnosis would have shown it as large as it was named last: beyond the last one's limit by
-        1.96 standard errors of both, as two diagnoses are compared (difference.py)."""
+        """Whether the last diagnosis would have shown it as large as it was named last: by 1.96 standard errors of both
+        beyond its estimate, or beyond its limit, as two diagnoses are compared (difference.py)."""
         last = self.points[-1]
         named = [p for p in self.points if p.state == "named"]
         if last.state != "not named" or not named:
             return False
-        limit = last.high - last.value
-        error = math.hypot(named[-1].standard_error, limit / DETECTION)
-        return abs(named[-1].value - self.neutral) - limit > COVERAGE * error
+        if last.limit is None:
+            shift, error = abs(named[-1].value - last.value), last.standard_error
+        else:
+            shift = abs(named[-1].value - self.neutral) - last.limit
+            error = last.limit / DETECTION
+        return shift > COVERAGE * math.hypot(named[-1].standard_error, error)
 
     @property
     def grows(self) -> bool:
@@ -170,11 +175,8 @@ def _not_named(
     """None where this diagnosis could not have named it. usual: the limit, where it does not say one."""
     if not answer.judges or stands.key in answer.not_testable:
         return None
-    if answer.verdict == "no-evidence":
-        fitted = [e for e in answer.model if e.parameter == size.parameter]
-        points = [_estimated(number, answer, e, "not named") for e in fitted]
-        if points and points[0] is not None:
-            return points[0]
+    if (estimate := answer.not_named(stands)) is not None:
+        return _estimated(number, answer, estimate, "not named")
     limit = answer.limits.get(stands.key, math.nan)
     limit = limit if math.isfinite(limit) else usual
     if not math.isfinite(limit) or limit <= 0.0:
@@ -182,9 +184,8 @@ def _not_named(
     declared = answer.declared.get("parameters", {}).get(size.parameter, {})
     value = float(declared.get("value", size.neutral))
     time = answer.measured.timestamp()
-    return Point(
-        number, time, value, limit / math.sqrt(3.0), value - limit, value + limit, "not named"
-    )
+    error = limit / math.sqrt(3.0)
+    return Point(number, time, value, error, value - limit, value + limit, "not named", limit)
 
 
 def _model_courses(answers: Sequence[Answer]) -> list[Course]:

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from sms.history.answer import Answer
+from sms.io.signals import SIGNAL_UNITS
+from sms.io.units import split_column_name
 from sms.units_display import format_quantity, words
 
 
@@ -16,7 +18,7 @@ def changes(a: Answer, b: Answer) -> list[str]:
     units = {e.parameter: e.unit for answer in (a, b) for e in _estimates(answer)}
     return [
         *_parameters(a.declared, b.declared, units),
-        *_tables(a.declared, b.declared, "signals"),
+        *_signals(a.declared, b.declared),
         *_keys("[model]", a.declared.get("model") or {}, b.declared.get("model") or {}),
         *_keys("[control]", a.declared.get("control") or {}, b.declared.get("control") or {}),
     ]
@@ -60,14 +62,21 @@ def _declaration(known: Any, unit: str, name: str) -> str:
     return f"{shown} within {format_quantity(width, unit, name)}" if width else shown
 
 
-def _tables(a: Mapping[str, Any], b: Mapping[str, Any], table: str) -> Iterator[str]:
-    before, after = a.get(table) or {}, b.get(table) or {}
+def _signals(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[str]:
+    before, after = a.get("signals") or {}, b.get("signals") or {}
     for name in dict.fromkeys([*before, *after]):
-        where = f"[{table}] {name}"
+        where = f"[signals] {name}"
         if name not in before or name not in after:
             yield f"{where} {'is new' if name not in before else 'is gone'}"
         else:
-            yield from _keys(where, before[name], after[name])
+            yield from _keys(where, _with_unit(name, before[name]), _with_unit(name, after[name]))
+
+
+def _with_unit(signal: str, source: Mapping[str, Any]) -> dict[str, Any]:
+    """The source of a signal, its unit said once: in the rig file, in the column's name, or SI for want of both."""
+    column, unit = split_column_name(str(source.get("column") or ""))
+    said = source.get("unit") or unit or SIGNAL_UNITS.get(signal)
+    return {**source, "column": column, "unit": said}
 
 
 def _keys(where: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:

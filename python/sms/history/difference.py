@@ -202,7 +202,7 @@ def _two_estimates(
 def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool) -> Item:
     """An effect that only one of the two names, `own`; `other` does not."""
     size = named.estimates[0]
-    if (unnamed := _unnamed(named, other)) is not None:
+    if (unnamed := other.not_named(named)) is not None:
         a, b = (unnamed, size) if named_in_b else (size, unnamed)
         reason = f"{other.source} does not name it; in brackets is the size that would fit its records best"
         item = _two_estimates("cause", named.key, named.title, a, b, abs(size.shift), reason)
@@ -223,21 +223,6 @@ def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool)
         beyond / error, "cannot be told", reason, matters=abs(size.shift),
         absent="a" if named_in_b else "b",
     )  # fmt: skip
-
-
-def _unnamed(named: Explanation, other: Answer) -> Estimate | None:
-    """What the other diagnosis states of an effect that it does not name, or of the declared parameter that it shifts;
-    None where it does not say."""
-    size = named.estimates[0]
-    if not other.judges:
-        return None
-    if (shift := other.unnamed.get(named.key)) is not None:
-        value = size.neutral + shift.value
-        return replace(shift, parameter=size.parameter, value=value, neutral=size.neutral)
-    if other.causes:
-        return None
-    model = next((e for e in other.model if e.parameter == size.parameter), None)
-    return model if model is not None and math.isfinite(model.standard_error) else None
 
 
 def limit_of(named: Explanation, own: Answer, other: Answer) -> tuple[float, str]:

@@ -21,6 +21,8 @@ class Entry:
     """One diagnosis."""
 
     measured: str
+    date: str
+    """For a person: with the time of day where another diagnosis has the same date."""
     measured_from: str
     verdict: str
     sentence: str
@@ -59,11 +61,13 @@ def history_of(
     ordered = sorted(answers, key=lambda a: a.measured)
     courses = courses_of(ordered, _limits_si(limits or {}, ordered))
     entries = []
+    shown = wording.dates([a.measured.timestamp() for a in ordered])
     for number, answer in enumerate(ordered):
         before = changes(ordered[number - 1], answer) if number else []
         entries.append(
             Entry(
                 answer.measured.isoformat(timespec="seconds"),
+                shown[number],
                 answer.measured_from,
                 answer.verdict,
                 answer.sentence,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 
 from sms.history.course import Course
@@ -21,34 +22,35 @@ def sentences(courses: Sequence[Course]) -> list[str]:
 
 
 def _of(course: Course) -> Iterator[str]:
-    name = name_of(course)
+    name, when = name_of(course), dates_of(course)
     if course.about == "cause":
-        yield from _presence(course, name)
+        yield from _presence(course, name, when)
     if (onset := course.onset) is not None:
         first, earliest, latest = onset
         ramp = course.change is not None and course.change.course == "ramp"
         between = ""
         if earliest.number != latest.number:
-            between = f" (95 %: between {day(earliest.time)} and {day(latest.time)})"
+            between = f" (95 %: between {when[earliest.number]} and {when[latest.number]})"
         how = "keeps changing" if ramp else "changed in one step"
-        yield f"{capital(name)} {how}: the first changed diagnosis is that of {day(first.time)}{between}."
+        of = when[first.number]
+        yield f"{capital(name)} {how}: the first changed diagnosis is that of {of}{between}."
     if course.trend is not None and course.moves:
         verb = "grows" if course.grows else "moves"
         yield f"{capital(name)} {verb} by {slope_in_words(course)}{_reached(course)}."
 
 
-def _presence(course: Course, name: str) -> Iterator[str]:
+def _presence(course: Course, name: str, when: Mapping[int, str]) -> Iterator[str]:
     first = course.first_named
     if course.appeared and first is not None:
-        point = next(p for p in course.points if p.number == first)
-        yield f"{capital(name)} appeared: first named in the diagnosis of {day(point.time)}."
+        yield f"{capital(name)} appeared: first named in the diagnosis of {when[first]}."
     last = course.points[-1]
     if course.went_away:
-        yield f"{capital(name)} went away: the diagnosis of {day(last.time)} would have shown it."
+        of = when[last.number]
+        yield f"{capital(name)} went away: the diagnosis of {of} would have shown it."
     elif first is not None and last.state == "not named":
         yield (
-            f"{capital(name)} is not named any more, but the diagnosis of {day(last.time)} might not have shown it as "
-            "small as it was."
+            f"{capital(name)} is not named any more, but the diagnosis of {when[last.number]} might not have shown it "
+            "as small as it was."
         )
 
 
@@ -93,6 +95,22 @@ def about(reached: Reached) -> str:
     return f"{month} ± {round(width / MONTH)} months"
 
 
+def dates_of(course: Course) -> dict[int, str]:
+    """Number of each diagnosis -> when it was measured."""
+    shown = dates([p.time for p in course.points])
+    return {p.number: text for p, text in zip(course.points, shown, strict=True)}
+
+
+def dates(times: Sequence[float]) -> list[str]:
+    """The date of each instant, s since 1970, in UTC; with its time of day where another one has the same date."""
+    count = Counter(map(day, times))
+    return [day(t) if count[day(t)] == 1 else _minute(t) for t in times]
+
+
 def day(time: float) -> str:
     """The date of an instant, s since 1970, in UTC."""
     return datetime.fromtimestamp(time, UTC).date().isoformat()
+
+
+def _minute(time: float) -> str:
+    return datetime.fromtimestamp(time, UTC).strftime("%Y-%m-%d %H:%M")

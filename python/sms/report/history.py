@@ -8,7 +8,7 @@ from typing import Any
 
 from sms.history.course import Course, Point, State
 from sms.history.summary import Entry, History
-from sms.history.wording import day, name_of, slope_in_words
+from sms.history.wording import dates_of, name_of, slope_in_words
 from sms.report.markup import empty, esc, section, table
 from sms.report.panels import Colour, figure, panel, panels_page, trace, view
 from sms.report.verdict import MISSING
@@ -149,6 +149,7 @@ def _instant(time: float) -> str:
 
 # ---- tables ----------------------------------------------------------------------------------------
 
+LONGEST_DATE = len("2026-11-25 14:30")
 COURSE_HEADERS = ("size", "first", "last", "since", "trend", "state")
 
 
@@ -159,7 +160,7 @@ def course_rows(courses: Sequence[Course]) -> list[tuple[str, ...]]:
             capital(name_of(c)),
             _estimate(c, c.points[0]),
             _estimate(c, c.points[-1]),
-            day(c.onset[0].time) if c.onset is not None else MISSING,
+            dates_of(c)[c.onset[0].number] if c.onset is not None else MISSING,
             slope_in_words(c) if c.moves else MISSING,
             _state(c),
         )
@@ -189,7 +190,10 @@ def _state(course: Course) -> str:
 
 
 def _course_table(identifier: str, title: str, courses: Sequence[Course]) -> str:
-    rows = [[_nowrap(c) if len(c) <= 10 else esc(c) for c in row] for row in course_rows(courses)]
+    rows = [
+        [_nowrap(c) if len(c) <= LONGEST_DATE else esc(c) for c in row]
+        for row in course_rows(courses)
+    ]
     if not rows:
         return ""
     caption = "Sizes with standard errors, of what is not named what its records leave possible; trends with 95 %"
@@ -200,7 +204,7 @@ def _course_table(identifier: str, title: str, courses: Sequence[Course]) -> str
 def _diagnoses(entries: Sequence[Entry]) -> str:
     rows = [
         [
-            _nowrap(e.measured[:10]),
+            _nowrap(e.date),
             *map(esc, (e.verdict, "; ".join(e.causes) or MISSING, e.measured_from, e.source)),
         ]
         for e in entries
@@ -215,9 +219,7 @@ def _nowrap(text: str) -> str:
 
 def _rig_file(entries: Sequence[Entry]) -> str:
     listed = "".join(
-        f"<li>{esc(e.measured[:10])}: {esc(text)}</li>"
-        for e in entries
-        for text in e.changed_in_rig_file
+        f"<li>{esc(e.date)}: {esc(text)}</li>" for e in entries for text in e.changed_in_rig_file
     )
     body = f"<ul>{listed}</ul>" if listed else empty("Nothing that is known of.")
     return section("rig-file", "What changed in the rig file", body)
