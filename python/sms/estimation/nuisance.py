@@ -20,6 +20,8 @@ from sms.estimation.problem import Problem
 
 RANK = 1e-9
 """Of a column's length: what others cannot do of it, below which it is one of them. Numerics."""
+ROUNDED = 1e-14
+"""The same of the square of a length that is a difference of squares. Numerics: a hundred roundings."""
 
 
 @dataclass(frozen=True)
@@ -125,41 +127,56 @@ def project(nuisance: Nuisance, columns: Array, names: Sequence[str]) -> Array:
     """(rows + known, m): what of columns (rows, m) the free parameters cannot do; its own is no rival."""
     q, r = np.linalg.qr(nuisance._stacked)
     alone = np.abs(np.diag(r)) > RANK
+    own = [i for i, name in enumerate(names) if name in nuisance.names]
+    out = nuisance.with_declared(columns)
+    if alone.all():
+        done = q[: len(columns)].T @ columns
+        _but_its_own(nuisance, q[len(columns) :], r, names, own, done, out)
+        out -= q @ done
+        return out
     basis = q[:, alone]
-    full = nuisance.with_declared(columns)
-    out = full - basis @ (basis.T @ full)
-    for i, name in enumerate(names):
-        if name not in nuisance.names:
-            continue
-        if alone.all():
-            out[:, i] = _with_its_own(nuisance, q, r, name, full[:, i], out[:, i])
-        else:
-            others = nuisance.without(name).basis()
-            out[:, i] = full[:, i] - others @ (others.T @ full[:, i])
+    out -= basis @ (basis[: len(columns)].T @ columns)
+    for i in own:
+        others = nuisance.without(names[i]).basis()
+        full = nuisance.with_declared(columns[:, i])
+        out[:, i] = full - others @ (others.T @ full)
     return out
 
 
-def _with_its_own(
-    nuisance: Nuisance, q: Array, r: Array, name: str, full: Array, rest: Array
-) -> Array:
-    """What of `full` all parameters but one cannot do, from `rest`, what all together cannot.
+def _but_its_own(
+    nuisance: Nuisance,
+    declared: Array,
+    r: Array,
+    names: Sequence[str],
+    own: Sequence[int],
+    done: Array,
+    out: Array,
+) -> None:
+    """Takes from `done` (k, m), which is what all parameters can do of each column as combinations of the columns of
+    Q, what its own parameter alone can; and from `out` what is declared of that one.
 
-    The stacked matrix is Q R. What the one can do and the others cannot is along Q w, with w the solution of R' w = e;
-    and they may do what is declared of the one (Nuisance.without).
+    declared: the rows of Q below the Jacobian. The stacked matrix is Q R. What one parameter can do and the others
+    cannot is along Q w, with w the solution of R' w = e, of length 1. The others may do what is declared of the one,
+    too (Nuisance.without): the part of that row d that they cannot do otherwise is d + Q g, which is orthogonal to all
+    that they can, so that what it takes of a column c is along (c'd + c'Q g) = (Q'c)'g, since c is zero there.
     """
-    k = nuisance.names.index(name)
-    unit = np.zeros(len(nuisance.names))
-    unit[k] = 1.0
-    w = solve_triangular(r, unit, trans="T")
-    own = q @ (w / np.linalg.norm(w))
-    rest = rest + own * float(own @ full)
-    declared = np.concatenate([np.zeros(len(nuisance.jacobian)), nuisance.pull[:, k]])
-    length = float(np.linalg.norm(declared))
-    if length > 0.0:
-        declared /= length
-        declared -= q @ (q.T @ declared)
-        declared += own * float(own[len(nuisance.jacobian) :] @ nuisance.pull[:, k]) / length
-        size = float(np.linalg.norm(declared))
-        if size > RANK:
-            rest = rest - declared * float(declared @ rest) / size**2
-    return np.asarray(rest)
+    for i in own:
+        k = nuisance.names.index(names[i])
+        unit = np.zeros(len(nuisance.names))
+        unit[k] = 1.0
+        w = solve_triangular(r, unit, trans="T")
+        w /= np.linalg.norm(w)
+        column = done[:, i].copy()
+        done[:, i] -= w * float(w @ column)
+        length = float(np.linalg.norm(nuisance.pull[:, k]))
+        if length == 0.0:
+            continue
+        d = nuisance.pull[:, k] / length
+        shares = declared.T @ d
+        g = w * float(w @ shares) - shares
+        below = declared @ g
+        size = float((d + below) @ (d + below) + g @ g - below @ below)
+        if size > ROUNDED:
+            taken = float(g @ column) / size
+            done[:, i] += taken * g
+            out[-len(d) :, i] -= taken * d

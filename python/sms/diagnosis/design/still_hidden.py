@@ -32,7 +32,8 @@ def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple
     runs = data.identify
     names = [e.parameters[0] for e in effects]
     raw = raw_columns(fitted, runs, effects)
-    reduced = project(nuisance_of(fitted), raw, names)
+    moving = nuisance_of(fitted)
+    reduced = project(moving, raw, names)
     rows = len(fitted.fit.residual)
     size = np.linalg.norm(reduced[:rows], axis=0)
     level = np.sqrt(max(float(np.mean(fitted.fit.residual**2)), 1.0))
@@ -42,9 +43,11 @@ def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple
     found = []
     # What is held by a bound is where it is since something is wrong, which may be this effect: it may move back.
     nuisance = nuisance_of(fitted, held=True)
+    if nuisance.names != moving.names:
+        reduced = project(nuisance, raw, names)
     estimates = [
         None if name in nuisance.names else _best_shift(column, nuisance, fitted, runs, level)
-        for name, column in zip(names, project(nuisance, raw, names).T, strict=True)
+        for name, column in zip(names, reduced.T, strict=True)
     ]
     for effect, name, own, best in zip(effects, names, size, estimates, strict=True):
         largest = max(abs(end) for end in room_of(effect, fitted.params, data.rig))
