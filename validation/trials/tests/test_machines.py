@@ -113,7 +113,7 @@ def test_on_a_dask_cluster_the_same_outcomes(
     assert [replace(o, seconds=0.0) for o in there] == [replace(o, seconds=0.0) for o in here]
 
 
-@pytest.mark.parametrize("sort", ["healthy", "catalogue"])
+@pytest.mark.parametrize("sort", ["healthy", pytest.param("catalogue", marks=pytest.mark.full)])
 def test_one_drawn_bench_of_each_sort(sort: str) -> None:
     seed = {"healthy": 5001, "catalogue": 5002}[sort]
     found = run_task(Task("bench", seed, sort, 3.0))
