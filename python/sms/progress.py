@@ -8,7 +8,6 @@ from contextlib import contextmanager
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
 
 INTERRUPTED_CODE = 130  #: what a shell gives to Ctrl-C
 
@@ -18,6 +17,14 @@ def progress_bar(
     text: str, stopped: str = "nothing was written"
 ) -> Iterator[Callable[[str, float], None]]:
     """A bar on stderr; what it gives is told (what is done now, the share). Ctrl-C ends it."""
+    from rich.progress import (  # noqa: PLC0415 (--help must not wait for it)
+        BarColumn,
+        Progress,
+        SpinnerColumn,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from sms.cli.assets import Assets
-from sms.cli.identify import progress_bar, write_files
+from sms.cli.identify import write_files
+from sms.progress import progress_bar
 from sms.report.assets import Place
 
 calibrate = typer.Typer(

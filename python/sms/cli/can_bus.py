@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 if TYPE_CHECKING:
     import can
+    from rich.progress import Progress
 
     from sms.link.rig_link import RigLink
 
@@ -142,6 +142,14 @@ def recording(link: RigLink, log: Path | None) -> Iterator[None]:
 
 @contextmanager
 def progress_bar() -> Iterator[Progress]:
+    from rich.progress import (  # noqa: PLC0415 (--help must not wait for it)
+        BarColumn,
+        Progress,
+        SpinnerColumn,
+        TextColumn,
+        TimeElapsedColumn,
+    )
+
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),

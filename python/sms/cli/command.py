@@ -11,7 +11,6 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms.cli import (
     calibrate,
@@ -32,6 +31,7 @@ from sms.cli import (
 )
 from sms.cli.assets import Assets
 from sms.errors import InputError
+from sms.progress import INTERRUPTED_CODE, progress_bar
 from sms.report.assets import Place
 
 app = typer.Typer(
@@ -154,18 +154,11 @@ def diagnose(
                 f"{rig}: a history is kept of rigs of this project, not of FMUs; leave --history out"
             )
         history.check_history(history_file, rig, machine)
-    columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("reading records", total=1.0)
-        answer = (diagnose_fmu if is_fmu_rig(rig) else run)(
-            rig,
-            seed,
-            lambda text, done: progress.update(task, description=text, completed=done),
-            empirical,
-        )
+    with progress_bar("reading records") as tell:
+        answer = (diagnose_fmu if is_fmu_rig(rig) else run)(rig, seed, tell, empirical)
         if stated is not None:
             answer = replace(answer, measured=stated, measured_from="stated")
-        progress.update(task, description="writing the report", completed=0.95)
+        tell("writing the report", 0.95)
         files = (
             write_fmu_diagnosis(answer, rig, out)
             if isinstance(answer, Answer)
@@ -221,7 +214,7 @@ def main() -> None:
         sys.exit(BAD_INPUT)
     except KeyboardInterrupt:
         print("sms: stopped; nothing was written", file=sys.stderr)
-        sys.exit(130)
+        sys.exit(INTERRUPTED_CODE)
 
 
 def _in_one_line(sentence: str) -> str:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import secrets
 import sys
 import time
-import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -86,13 +84,18 @@ def demo(
     if real:
         told = real_cylinder(out, console)
     else:
-        told = hidden_effect(
-            out, secrets.randbelow(LARGEST_SEED) if seed is None else seed, effect, console
-        )
+        told = hidden_effect(out, drawn_seed() if seed is None else seed, effect, console)
     if as_json is not None:
         write_text_atomically(as_json, json_text("demo", told))
     page = out / (f"{REAL[0]}/report.html" if real else "report.html")
     open_page(page, show, console)
+
+
+def drawn_seed() -> int:
+    """Of a demonstration whose seed nobody gave."""
+    import secrets  # noqa: PLC0415 (--help must not wait for it)
+
+    return secrets.randbelow(LARGEST_SEED)
 
 
 def hidden_effect(out: Path, seed: int, effect: str | None, console: Console) -> dict[str, Any]:
@@ -215,6 +218,8 @@ def open_page(page: Path, wanted: bool | None, console: Console) -> None:
     """Show a page in the browser, if there is one, and it is wanted or nobody said and this is a terminal."""
     if wanted is False or (wanted is None and not sys.stdout.isatty()):
         return
+    import webbrowser  # noqa: PLC0415 (--help must not wait for it)
+
     if not (has_browser() and webbrowser.open(page.resolve().as_uri())) and wanted:
         console.print(f"There is no browser here; open {page} in one.", soft_wrap=True)
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from sms.cli.assets import Assets
+from sms.progress import progress_bar
 from sms.report.assets import Place
 
 if TYPE_CHECKING:
@@ -219,15 +216,6 @@ def spool(
 
 
 # ---- shared ------------------------------------------------------------------------------------------------
-
-
-@contextmanager
-def progress_bar(first: str) -> Iterator[Any]:
-    """A bar on the terminal; yields update(text, share done)."""
-    columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn()
-    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as progress:
-        task = progress.add_task(first, total=1.0)
-        yield lambda text, done: progress.update(task, description=text, completed=done)
 
 
 def _deliver(
