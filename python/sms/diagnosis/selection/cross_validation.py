@@ -1,6 +1,6 @@
 """Cross-validation of an effect to which the validation records are insensitive: fast friction, slow records.
 
-Such records can speak neither for it nor against it. What is left is to hold the fitted records against each other: the
+Such records can speak neither for it nor against it, and few windows cannot exclude chance. What is left is to hold the fitted records against each other: the
 effect's size comes from a part of them, and has to predict the rest. A part is a record, where more than one feels the
 effect; else every other window of all. As on unseen records, what is known may move within what is declared, and the
 causes are held. Each part is one linear step away from the fit to all, so that nothing is simulated again.
@@ -40,15 +40,12 @@ def objection(
     gain = weighted_ms(before, runs.block, counts) - weighted_ms(after, runs.block, counts)
     worth = before - after
     if interval(gain)[0] <= 0.0:
-        return "the validation records are insensitive to it, and the identification records disagree on its value"
+        return "the identification records disagree on its value"
     if float(np.mean(worth)) < least:
-        return "the validation records are insensitive to it, and it improves the identification records little"
+        return "it improves the identification records little"
     for number, run in enumerate(runs.motions):
         if float(np.mean(worth[runs.record == number])) < -least:
-            return (
-                "the validation records are insensitive to it, and the value estimated from the other records "
-                f"makes '{run.name}' worse"
-            )
+            return f"the value estimated from the other records makes '{run.name}' worse"
     return ""
 
 

@@ -67,16 +67,14 @@ def judge(
             _by_likelihood(trial, before, after, weights, tried, data.healthy)
         low, high = (min(part * g, 1.0) for g in trial.gain_interval)
         trial.share = (min(part * trial.gain, 1.0), low, high)
-        trial.cross_validated = trial.gain_interval[0] <= 0.0 and _insensitive(
-            trial, current, data, before, after
-        )
-        trial.reason = _untenable(trial, data) or _leaves_much(
+        chance = trial.gain_interval[0] <= 0.0
+        trial.cross_validated = chance and _insensitive(trial, current, data, before, after)
+        few = chance and not trial.cross_validated and data.healthy is None and trial.gain >= needed
+        trial.reason = _untenable(trial, data, few) or _leaves_much(
             trial, needed, _telling(before, data)
         )
-        if trial.cross_validated and not trial.reason:
-            trial.reason = cross_validation.objection(
-                trial.fitted, current, data, 1.0, rng.spawn(1)[0]
-            )
+        if (trial.cross_validated or few) and not trial.reason:
+            trial.reason = _contradicted(trial, current, data, rng.spawn(1)[0])
         channel = channel_of_its_own(trial.effect, data)
         if trial.reason and trial.lower > 0.0 and channel is not None and data.healthy is None:
             trial.p_value, trial.cross_validated = by_score, False
@@ -164,6 +162,15 @@ def _by_likelihood(
     trial.p_value = min(1.0, tried * float(chi2.sf(ratio, len(trial.effect.parameters))))
 
 
+def _contradicted(trial: Trial, current: Fitted, data: Data, rng: np.random.Generator) -> str:
+    """What the identification records, held against each other, have against it. That is asked where the validation
+    records are insensitive to it, and where they are so few that it may be by chance that it takes most of what is left
+    on them: of four windows, two of which are insensitive, every sixteenth resample has no others."""
+    objection = cross_validation.objection(trial.fitted, current, data, 1.0, rng)
+    why = "are insensitive to it" if trial.cross_validated else "are too few to exclude chance"
+    return f"the validation records {why}, and {objection}" if objection else ""
+
+
 def _insensitive(trial: Trial, current: Fitted, data: Data, before: Left, after: Left) -> bool:
     """Whether the change of the validation records is not practically significant, and not significantly for the worse.
 
@@ -193,13 +200,16 @@ def implausible(effect: Effect, fitted: Fitted, data: Data) -> str:
     return ""
 
 
-def _untenable(trial: Trial, data: Data) -> str:
-    """Why the trial cannot be a cause, not even one among others; empty if there is nothing against it."""
+def _untenable(trial: Trial, data: Data, few: bool = False) -> str:
+    """Why the trial cannot be a cause, not even one among others; empty if there is nothing against it.
+
+    few: that it takes most of what is left on the validation records, but for few windows, is no objection.
+    """
     if beyond := implausible(trial.effect, trial.fitted, data):
         return beyond
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
-    if trial.gain_interval[0] <= 0.0 and not trial.cross_validated:
+    if trial.gain_interval[0] <= 0.0 and not (trial.cross_validated or few):
         return f"{_taken(trial)}, where it may be chance"
     return ""
 
