@@ -10,6 +10,7 @@ from sms.errors import InputError
 from validation.trials import (
     calibrate,
     foreign,
+    foreign_pairs,
     history,
     lung,
     machine_commands,
@@ -24,7 +25,7 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode="markdown",
 )
-COMMANDS = (machine_commands, foreign, lung, slips, history, pairs, watch, calibrate)
+COMMANDS = (machine_commands, foreign, foreign_pairs, lung, slips, history, pairs, watch, calibrate)
 """Modules with a function register(app)."""
 for module in COMMANDS:
     module.register(app)

@@ -167,10 +167,15 @@ def with_exchanged_roles(file: Path, folder: Path) -> Path:
     exchanged."""
     other = {"identify": "validate", "validate": "identify"}
     rig = tomlkit.parse(file.read_text(encoding="utf-8"))
-    data = rig.setdefault("data", tomlkit.table())
-    data["folder"] = str(file.parent.resolve() / data.get("folder", ""))
     for record in rig["records"]:
         record["role"] = other.get(record["role"], record["role"])
+    return moved_rig(rig, file, folder)
+
+
+def moved_rig(rig: tomlkit.TOMLDocument, file: Path, folder: Path) -> Path:
+    """Writes what a rig file has become into `folder`; its records stay where they are."""
+    data = rig.setdefault("data", tomlkit.table())
+    data["folder"] = str(file.parent.resolve() / data.get("folder", ""))
     made = folder / file.name
     made.write_text(tomlkit.dumps(rig), encoding="utf-8")
     return made

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from validation.trials.__main__ import app
 from validation.trials.foreign import chosen_sets, with_exchanged_roles, within
+from validation.trials.foreign_pairs import first_day, judged
 from validation.trials.machine_commands import as_dict
 from validation.trials.machines import SORTS, tasks
 from validation.trials.scoring import Outcome
@@ -90,3 +91,45 @@ def test_records_exchange_their_roles_and_are_found_where_they_are(tmp_path: Pat
     ]
     exchanged = ("validate", "identify", "reference")
     assert found == [(there, role, other) for role, other in zip(roles, exchanged, strict=True)]
+
+
+def test_reference_records_are_the_first_day_of_a_pair(tmp_path: Path) -> None:
+    there, here = tmp_path / "there", tmp_path / "here"
+    there.mkdir()
+    here.mkdir()
+    text = '[rig]\nkind = "tank"\n[signals]\ntime = "t"\nvalve_command = "u"\ntank_pressure = "p"\n'
+    for name, role in (("a", "identify"), ("b", "validate"), ("c", "identify")):
+        text += f'[[records]]\nfile = "{name}.csv"\nrole = "{role}"\nname = "{name}"\n'
+    for name in ("b", "a"):
+        text += (
+            f'[[records]]\nfile = "r{name}.csv"\nrole = "reference"\nname = "reference_{name}"\n'
+        )
+    (there / "rig.toml").write_text(text)
+    for name in ("a", "b", "c", "ra", "rb"):
+        (there / f"{name}.csv").write_text("t,u,p\n0,5,1e5\n1,5,1e5\n2,5,1e5\n")
+    made = load_rig(first_day(there / "rig.toml", here))
+    assert [(r.file.name, r.role) for r in made.records] == [
+        ("rb.csv", "validate"),
+        ("ra.csv", "identify"),
+    ]
+    (there / "rig.toml").write_text(text.replace("reference_b", "reference_d"))
+    with pytest.raises(InputError, match="no record 'd'"):
+        first_day(there / "rig.toml", here)
+
+
+@pytest.mark.parametrize(
+    ("accepted", "changed", "right", "wrong"),
+    [
+        ([{"NOTHING"}], [], True, False),
+        ([{"NOTHING"}], [["backlash"]], False, True),
+        ([{"UNKNOWN"}], [], True, False),
+        ([{"valve_leakage"}], [["valve_leakage"]], True, False),
+        ([{"valve_leakage"}], [], False, False),
+        ([{"valve_leakage"}], [["valve_leakage"], ["backlash"]], False, True),
+        ([{"valve_leakage"}, {"moving_mass"}], [["valve_leakage"]], False, False),
+    ],
+)
+def test_a_pair_is_right_when_what_was_hidden_and_nothing_else_is_called_changed(
+    accepted: list[set[str]], changed: list[list[str]], right: bool, wrong: bool
+) -> None:
+    assert judged(accepted, changed) == (right, wrong)
