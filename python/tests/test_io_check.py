@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -214,3 +215,16 @@ def test_records_to_fit_on_and_others_to_judge_on(
     for word in [str(rig.path), "[[records]]", *words]:
         assert word in str(finding)
     assert check_rig(load_rig(write_rig(tmp_path))) == ()
+
+
+def test_what_a_rig_file_says_in_vain_is_a_warning(tmp_path: Path) -> None:
+    text = PLAIN_RIG.replace("[[records]]", '[model]\nfriction = "lugre"\n\n[[records]]', 1)
+    rig = load_rig(write_rig(tmp_path, text))
+    assert rig.kind == "cylinder"
+    (finding,) = check_rig(rig)
+    assert finding.severity == "warning"
+    assert "[model] friction has no effect on a cylinder" in str(finding)
+    noisy = replace(rig.signals["rod_force"], noise=1.0)
+    rig = replace(load_rig(write_rig(tmp_path)), signals={**rig.signals, "rod_force": noisy})
+    (finding,) = check_rig(rig)
+    assert finding.signal == "rod_force" and "stroke to stroke" in finding.message

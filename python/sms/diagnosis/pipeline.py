@@ -80,20 +80,27 @@ def read_and_check(rig: Rig) -> tuple[list[Record], tuple[Finding, ...]]:
     A channel that can be read but cannot be true (stuck, saturated, beyond its range) is an error among the
     findings: the answer to it is the verdict data-fault.
     """
-    data_check.raise_if_unusable(data_check.check_rig(rig))
-    records, findings = [], []
+    of_rig = data_check.check_rig(rig)
+    data_check.raise_if_unusable(of_rig)
+    records: list[Record] = []
+    findings = [_as_told(f) for f in of_rig]
     for source in rig.records:
         record = load_record(rig, source)
         record = thinned(record) if rig.kind in KINDS else record
         found = data_check.check_record(rig, record)
         data_check.raise_if_unreadable(record, found)
         records.append(record)
-        findings += [
-            Finding(f.severity, f.file.name, f.line, f.signal, f.message, f.remedy) for f in found
-        ]
+        findings += [_as_told(f) for f in found]
     if rig.kind in KINDS:
         raise_if_too_many(rig, records)
     return records, tuple(findings)
+
+
+def _as_told(found: data_check.Finding) -> Finding:
+    """As it stands in the answer."""
+    return Finding(
+        found.severity, found.file.name, found.line, found.signal, found.message, found.remedy
+    )
 
 
 def declared_wrongly(data: Data, effects: Sequence[Effect]) -> tuple[Finding, ...]:

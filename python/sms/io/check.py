@@ -24,6 +24,7 @@ from sms.io.plausible import (
 )
 from sms.io.records import Finding, Record, Severity
 from sms.io.rig import Rig
+from sms.io.schema import ModelTable
 from sms.io.signals import is_pressure
 from sms.io.unit_slips import unit_of_time
 
@@ -48,8 +49,8 @@ def check_record(rig: Rig, record: Record) -> tuple[Finding, ...]:
 
 
 def check_rig(rig: Rig) -> tuple[Finding, ...]:
-    """Whether the rig has records to fit on and others to judge on."""
-    findings = []
+    """Whether the rig has records to fit on and others to judge on; warnings of what its rig file says in vain."""
+    findings = list(_without_effect(rig))
     for role, purpose in (("identify", "to fit on"), ("validate", "to judge on")):
         if all(record.role != role for record in rig.records):
             count = "only one record" if len(rig.records) == 1 else f"{len(rig.records)} records"
@@ -65,6 +66,20 @@ def check_rig(rig: Rig) -> tuple[Finding, ...]:
                 )
             )
     return tuple(findings)
+
+
+def _without_effect(rig: Rig) -> Iterator[Finding]:
+    """What is declared of the model or of a sensor, and has no effect on a rig of this kind."""
+    of_friction = {"friction", "friction_map_uncertainty"}
+    unused = {"cylinder": set(ModelTable.model_fields), "tank": of_friction}.get(rig.kind, set())
+    for key in sorted(unused & rig.model.model_fields_set):
+        message = f"[model] {key} has no effect on a {rig.kind}"
+        yield Finding("warning", rig.path, None, None, message, "leave it out")
+    if rig.kind == "cylinder":
+        for name, source in rig.signals.items():
+            if source.noise is not None:
+                message = "its noise has no effect on a cylinder, whose noise is what differs from stroke to stroke"
+                yield Finding("warning", rig.path, None, name, message, "leave it out")
 
 
 def raise_if_unusable(findings: Sequence[Finding]) -> None:

@@ -1,9 +1,10 @@
 """Cross-validation of an effect to which the validation records are insensitive: fast friction, slow records.
 
-Such records can speak neither for it nor against it, and few windows cannot exclude chance. What is left is to hold the fitted records against each other: the
-effect's size comes from a part of them, and has to predict the rest. A part is a record, where more than one feels the
-effect; else every other window of all. As on unseen records, what is known may move within what is declared, and the
-causes are held. Each part is one linear step away from the fit to all, so that nothing is simulated again.
+Such records can speak neither for it nor against it, and few windows cannot exclude chance. What is left is to hold the
+fitted records against each other: the effect's size comes from a part of them, and has to predict the rest. A part is a
+record, where more than one feels the effect; else every other window of all. As on unseen records, what is known may
+move within what is declared, and the causes are held. Each part is one linear step away from the fit to all, so that
+nothing is simulated again.
 """
 
 from __future__ import annotations
