@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from plant_support import fitted_baseline, write_bench
+from plant_support import fitted_baseline, with_known_map, write_bench
 from sms import _core
 from sms.diagnosis import Diagnosis, diagnose
 from sms.diagnosis.adequacy.residual_energy import (
@@ -85,7 +85,7 @@ def test_a_leak_that_the_maps_could_make_up_for_is_named_since_they_would_be_far
     far, leak = [], 3e-9
     for seed, effects in ((1, {}), (2, {"piston_leakage": leak})):
         (tmp_path / str(seed)).mkdir()
-        path = write_bench(tmp_path / str(seed), seed, effects)
+        path = with_known_map(write_bench(tmp_path / str(seed), seed, effects))
         baseline, data = fitted_baseline(path)
         assert nothing_left(Left.by(baseline, data), data)
         far.append(departs(baseline))
@@ -125,7 +125,7 @@ def test_what_uncertain_maps_take_most_of_is_named_where_its_size_is_beyond_doub
     than ten standard errors. Both were `no-evidence`."""
     truth = tmp_path / "truth.json"
     draw_machine("bench", seed, tmp_path / "records", truth, effect, imperfection=1.0)
-    answer = diagnose(tmp_path / "records" / "rig.toml")
+    answer = diagnose(with_known_map(tmp_path / "records" / "rig.toml"))
     assert [list(cause.members) for cause in answer.causes] == [[effect]]
 
 
