@@ -63,6 +63,8 @@ class Trial:
     """Share of the baseline's error beyond the noise that it takes on validation records; its 95 percent interval."""
     cross_validated: bool = False
     """Whether the validation records are insensitive to it: judged on the fitted ones (cross_validation.py)."""
+    by_own_signal: bool = False
+    """Whether its shares are of what is left in the signal that its equation gives alone (judgement.py)."""
 
 
 def try_effects(

@@ -77,7 +77,7 @@ def judge(
             trial.reason = _contradicted(trial, current, data, rng.spawn(1)[0])
         channel = channel_of_its_own(trial.effect, data)
         if trial.reason and trial.lower > 0.0 and channel is not None and data.healthy is None:
-            trial.p_value, trial.cross_validated = by_score, False
+            trial.p_value, trial.cross_validated, trial.by_own_signal = by_score, False, True
             was = before.of(channel)
             _by_windows(trial, was, after.of(channel), weights, tried)
             trial.reason = _untenable(trial, data) or _leaves_much(

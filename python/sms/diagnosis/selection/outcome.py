@@ -34,7 +34,8 @@ class Outcome:
 
     def explained_by_one(self, share: float) -> bool:
         """Whether an effect took as much as that of what the baseline leaves, with one value for all records, on those
-        that were fitted and on the others; named or not.
+        that were fitted and on the others; named or not. What was judged by its own signal took of that alone.
         """
         first = self.rounds[0].trials if self.rounds else []
-        return any(min(t.seen_share, t.gain) >= share for t in first)
+        whole = (t for t in first if not t.by_own_signal)
+        return any(min(t.seen_share, t.gain) >= share for t in whole)
