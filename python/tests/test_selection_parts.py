@@ -270,6 +270,8 @@ def test_records_that_one_effect_explains_do_not_contradict_each_other() -> None
     assert explained.explained_by_one(0.8)
     assert not explained.explained_by_one(0.9)
     assert not Outcome(cast(Any, None), [], []).explained_by_one(0.0)
+    trial.by_own_signal = True  # of that one alone
+    assert not explained.explained_by_one(0.8)
 
 
 def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_much(
@@ -304,6 +306,9 @@ def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_m
     assert not stands([trial("leak", 0.5)])
     assert stands([trial("leak", 0.5), trial("gain", 0.5)])  # of a class another is beyond doubt
     assert stands([trial("leak", 0.9)])
+    by_own = trial("leak", 0.9)
+    by_own.by_own_signal = True
+    assert not stands([by_own])
     assert not stands([trial("leak", 0.9)], tolerated=9.0)
 
 

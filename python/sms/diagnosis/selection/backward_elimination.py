@@ -75,12 +75,13 @@ def without_insignificant(
     outcome: Outcome, final: Fitted, baseline: Fitted, data: Data, least: Array
 ) -> Outcome:
     """Without a single cause whose size is within its standard error. One stands all the same that takes nearly all of
-    an error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size.
+    an error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size. What was
+    judged by its own signal took of that alone.
     """
     if len(outcome.found) != 1:
         return outcome
     first = outcome.found[0][0]
-    takes_all = min(first.seen_share, first.gain) >= NEARLY_ALL
+    takes_all = not first.by_own_signal and min(first.seen_share, first.gain) >= NEARLY_ALL
     if takes_all and not small(Left.by(baseline, data), least):
         return outcome
     if not _may_be_nothing(
