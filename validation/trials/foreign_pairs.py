@@ -47,7 +47,7 @@ class Changed:
     hidden: list[str]
     verdicts: tuple[str, str]
     changed: list[list[str]]
-    """Effect ids of each cause that is called changed; of a number of the declared model, those that shift it."""
+    """Effect ids of each cause that is called changed; a number of the declared model, and those that shift it."""
     right: bool
     """All that was hidden is called changed, under a right name, and nothing else; or nothing, where nothing was."""
     wrong: bool
@@ -96,7 +96,7 @@ def _diagnosed(file: Path, name: str) -> Answer:
 
 
 def named_changes(kind: str, first: Answer, second: Answer) -> list[list[str]]:
-    """Effect ids of what is called changed: a cause's members, or the effects that shift a number of the model."""
+    """Effect ids of what is called changed: a cause's members, or a number of the model and the effects that shift it."""
     members = {
         member.key: [m.effect for m in group]
         for answer in (first, second)
@@ -108,7 +108,8 @@ def named_changes(kind: str, first: Answer, second: Answer) -> list[list[str]]:
         if item.change == "changed" and item.about == "cause":
             found.append(members[item.key])
         elif item.change == "changed":
-            found.append([e.id for e in catalogue(kind) if item.parameter in e.parameters])
+            shifts = [e.id for e in catalogue(kind) if item.parameter in e.parameters]
+            found.append(list(dict.fromkeys([item.parameter, *shifts])))
     return found
 
 
