@@ -99,9 +99,8 @@ taking most of what is left where that is within what is tolerated; and a cause 
 records of the healthy machine told what is known. Convention: five sigma.
 """
 JOINT_INTERVAL = 0.95
-"""Of a cause among several, systematic errors counted: the interval that must not hold what is declared. Convention: 95
-percent. A single one has to be farther from it than errors alone are on average, or take
-NEARLY_ALL of what is not tolerated.
+"""Of a cause, systematic errors counted: the interval that must not hold what is declared. Convention: 95 percent. A
+single one may also take NEARLY_ALL of what is not tolerated.
 """
 DEPARTS = 1e-3
 """Chance from which on the numbers that are known lie too far from what is declared for a healthy machine, however

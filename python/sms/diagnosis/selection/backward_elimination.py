@@ -74,8 +74,8 @@ def without_untenable(
 def without_insignificant(
     outcome: Outcome, final: Fitted, baseline: Fitted, data: Data, least: Array
 ) -> Outcome:
-    """Without a single cause whose size is within its standard error. One stands all the same that takes nearly all of
-    an error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size. What was
+    """Without a single cause whose interval has no effect in it. One stands all the same that takes nearly all of an
+    error beyond what is tolerated, least (channels,): that is hardly imitated, however unsure the size. What was
     judged by its own signal took of that alone.
     """
     if len(outcome.found) != 1:
@@ -84,13 +84,11 @@ def without_insignificant(
     takes_all = not first.by_own_signal and min(first.seen_share, first.gain) >= NEARLY_ALL
     if takes_all and not small(Left.by(baseline, data), least):
         return outcome
-    if not _may_be_nothing(
-        outcome.found[0], final, baseline.hypothesis.start, data, on_average=True
-    ):
+    if not _may_be_nothing(outcome.found[0], final, baseline.hypothesis.start, data):
         return outcome
     for trial in outcome.found[0]:
         trial.accepted = False
-        trial.reason = "in the final model its size is within its standard error"
+        trial.reason = "in the final model its interval of 95 % has no effect in it"
     return Outcome(baseline, outcome.rounds, [])
 
 
@@ -99,15 +97,14 @@ def _may_be_nothing(
     final: Fitted,
     declared: _core.Params,
     data: Data,
-    on_average: bool = False,
 ) -> bool:
-    """Whether errors alone would bring every member of a class where it is, in one case of twenty or on average. One
-    may be known as nearly as what it is confounded with, a sensor's gain as its zero, where another is beyond doubt.
+    """Whether errors alone would bring every member of a class where it is, in one case of twenty. One may be known as
+    nearly as what it is confounded with, a sensor's gain as its zero, where another is beyond doubt.
     """
     for trial in members:
         at = final if trial is members[0] else generalised(trial.fitted, data)
         distance, count = _distance_from_nothing(trial.effect, at, declared)
-        if distance >= (count if on_average else float(chi2.ppf(JOINT_INTERVAL, count))):
+        if distance >= float(chi2.ppf(JOINT_INTERVAL, count)):
             return False
     return True
 
