@@ -96,7 +96,7 @@ def _diagnosed(file: Path, name: str) -> Answer:
 
 
 def named_changes(kind: str, first: Answer, second: Answer) -> list[list[str]]:
-    """Effect ids of what is called changed: a cause's members, or a number of the model and the effects that shift it."""
+    """Of what is called changed: a cause's effect ids, or a number of the model and the effects that shift it."""
     members = {
         member.key: [m.effect for m in group]
         for answer in (first, second)
