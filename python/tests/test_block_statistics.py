@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import binom
 from sms.diagnosis.adequacy.repeatability import repeatability
 from sms.estimation.block_statistics import (
     covariance_from,
@@ -47,7 +48,11 @@ def test_a_covariance_does_not_depend_on_the_units_of_the_parameters(
 
 
 def test_healthy_but_coloured_data_names_nothing(rng: np.random.Generator) -> None:
-    """The regression test of the whole idea: 28 candidates, correlation time 0.5 s at 100 Hz."""
+    """The regression test of the whole idea: 28 candidates, correlation time 0.5 s at 100 Hz.
+
+    Of a dozen blocks the level of 5 percent is 6.2: 111 alarms in 1800 draws. The bound is exceeded by chance once in
+    100 000 runs.
+    """
     strokes, samples, candidates, repeats = 40, 150, 28, 60
     stroke = np.repeat(np.arange(strokes), samples)
     n = len(stroke)
@@ -67,7 +72,8 @@ def test_healthy_but_coloured_data_names_nothing(rng: np.random.Generator) -> No
     assert naive_alarms >= 0.95 * repeats, (
         "the data would not fool a naive test: nothing is shown here"
     )
-    assert alarms <= 9, f"{alarms} alarms in {repeats}, 3 are expected"
+    most = int(binom.isf(1e-5, repeats, 0.062))
+    assert alarms <= most, f"{alarms} alarms in {repeats}, 4 are expected"
 
 
 def test_an_effect_at_ten_standard_errors_is_found(rng: np.random.Generator) -> None:
