@@ -170,7 +170,9 @@ def test_standard_deviations_of_random_effects_are_recovered() -> None:
         truth[:2], rel=0.2
     )  # of 400 each: 3.5 % is one standard error
     assert found[2] < 0.1  # what noise alone looks like: 0.03
-    assert larger == pytest.approx(np.ones((sets, 3)), abs=0.8)  # of 10 each: 0.16 is one
+    there, noise = larger[:, :2], found[2] * larger[:, 2]
+    assert there == pytest.approx(np.ones((sets, 2)), abs=1.2)  # 0.85 at most in 300 draws
+    assert noise.max() < 0.35  # 0.19 at most
 
 
 def test_a_few_sets_with_far_larger_effects_do_not_say_how_large_all_are() -> None:
