@@ -14,7 +14,6 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -22,18 +21,15 @@ import tomlkit
 import typer
 from rich.console import Console
 from sms.diagnosis import diagnose
-from sms.diagnosis.effects.catalogue import catalogue
-from sms.diagnosis.result import as_json
 from sms.errors import InputError
-from sms.history import Answer, compare, read_answer
 from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
+from validation.trials.compared import as_answer, called_changed
 from validation.trials.foreign import chosen_sets, moved_rig
 from validation.trials.processes import processes
 from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 
-WHEN = datetime(2026, 1, 15, tzinfo=UTC)
 OF_REFERENCE = "reference_"
 """What the name of a reference record has before that of the record with the same motion."""
 
@@ -80,37 +76,16 @@ def answer_pair(folder: Path, name: str) -> Changed:
     begin = time.perf_counter()
     place = folder / name
     with tempfile.TemporaryDirectory() as made:
-        well = _diagnosed(first_day(place / "rig_with_reference.toml", Path(made)), "well")
-    spoilt = _diagnosed(place / "rig.toml", "with what was hidden")
+        well = as_answer(diagnose(first_day(place / "rig_with_reference.toml", Path(made))), "well")
+    spoilt = as_answer(diagnose(place / "rig.toml"), "with what was hidden")
     seconds = time.perf_counter() - begin
     key = json.loads((folder / "keys" / f"{name}.json").read_text(encoding="utf-8"))
-    changed = named_changes(key["scope"], well, spoilt)
+    called = called_changed(key["scope"], well, spoilt)
+    changed = [list(dict.fromkeys(n.partition(":")[0] for n in names)) for names in called]
     right, wrong = judged([set(group) for group in key["accepted"]], changed)
     hidden = [e["name"] for e in key["effects"]]
     verdicts = (well.verdict, spoilt.verdict)
     return Changed(name, key["scope"], hidden, verdicts, changed, right, wrong, seconds)
-
-
-def _diagnosed(file: Path, name: str) -> Answer:
-    return read_answer(as_json(diagnose(file)), name, WHEN)
-
-
-def named_changes(kind: str, first: Answer, second: Answer) -> list[list[str]]:
-    """Of what is called changed: a cause's effect ids, or a number of the model and the effects that shift it."""
-    members = {
-        member.key: [m.effect for m in group]
-        for answer in (first, second)
-        for group in answer.causes
-        for member in group
-    }
-    found = []
-    for item in compare(first, second, any_machine=True).items:
-        if item.change == "changed" and item.about == "cause":
-            found.append(members[item.key])
-        elif item.change == "changed":
-            shifts = [e.id for e in catalogue(kind) if item.parameter in e.parameters]
-            found.append(list(dict.fromkeys([item.parameter, *shifts])))
-    return found
 
 
 def judged(accepted: Sequence[set[str]], changed: Sequence[Sequence[str]]) -> tuple[bool, bool]:

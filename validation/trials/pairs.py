@@ -14,29 +14,24 @@ import tempfile
 from collections.abc import Sequence
 from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass, replace
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 from rich.console import Console
-from sms.demo.hidden import key_of
 from sms.diagnosis import diagnose
-from sms.diagnosis.effects.catalogue import catalogue
-from sms.diagnosis.result import as_json
-from sms.history import Answer, compare, read_answer
+from sms.history import Answer
 from sms.io.json_files import json_text
 from sms.io.write import write_text_atomically
 
-from validation.trials.answers import key_of as of_effect
+from validation.trials.compared import as_answer, called_changed
 from validation.trials.processes import processes
 from validation.trials.shares import Share, at_least, at_most, share_table, shares_as_dicts
 from validation.twins.draw import RIGS, Trial, draw_trial, drawable, size_of, write_trial
 
 TIMES = ((0.0, 0.0), (1.0, 1.0), (3.0, 3.0), (0.0, 1.0), (0.0, 2.0), (0.0, 3.0))
 """Times its detection limit, of the effect on the first and on the second day."""
-WHEN = datetime(2026, 1, 15, tzinfo=UTC)
 
 
 @dataclass(frozen=True)
@@ -95,7 +90,7 @@ def pairs_of(kind: str, seed: int, imperfection: float) -> list[Pair]:
             before,
             after,
             sign * limit,
-            _changed(kind, first[before], second[after]),
+            called_changed(kind, first[before], second[after]),
             (first[before].verdict, second[after].verdict),
         )
         for before, after in TIMES
@@ -107,25 +102,7 @@ def _diagnosed(trial: Trial, name: str) -> Answer:
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records"
         write_trial(trial, records, Path(folder) / "sealed" / "truth.json")
-        return read_answer(as_json(diagnose(records / "rig.toml", seed=trial.seed)), name, WHEN)
-
-
-def _changed(kind: str, first: Answer, second: Answer) -> list[list[str]]:
-    """What is called changed: of a cause its members, of a number of the declared model the effects that shift it."""
-    explanations = {
-        member.key: [key_of(m.effect, m.signal) for m in members]
-        for answer in (first, second)
-        for members in answer.causes
-        for member in members
-    }
-    found = []
-    for item in compare(first, second).items:
-        if item.change == "changed" and item.about == "cause":
-            found.append(explanations[item.key])
-        elif item.change == "changed":
-            shifts = [of_effect(e) for e in catalogue(kind) if item.parameter in e.parameters]
-            found.append([item.parameter, *shifts])
-    return found
+        return as_answer(diagnose(records / "rig.toml", seed=trial.seed), name)
 
 
 def shares(pairs: Sequence[Pair]) -> list[Share]:
