@@ -58,3 +58,19 @@ def test_being_named_by_one_of_two_counts_twice() -> None:
     (item,) = [i for i in compare(well(before), ill(size)).items if i.about == "cause"]
     assert item.p_value == pytest.approx(2.0 * 0.0357, rel=0.01)
     assert item.change != "changed"
+
+
+def test_of_several_sizes_the_one_farthest_from_nothing_is_compared() -> None:
+    """A supply line whose loss is all turbulent: its linear share, the first parameter, is nothing."""
+    content = json.loads(drawn_answer(np.random.default_rng(2), {LEAK: 30.0}))
+    (cause,) = content["causes"]
+    linear = cause["parameters"][0] | {"value": 0.3 * ERROR, "standard_error": ERROR}
+    turbulent = linear | {"name": "another_size", "old_value": 0.0, "value": 0.5}
+    cause["parameters"] = [linear, turbulent | {"standard_error": 0.05}]
+    (item,) = [
+        i for i in compare(well(0.0), read(json.dumps(content), "ill")).items if i.about == "cause"
+    ]
+    assert (item.parameter, item.chosen_from, item.selected) == ("another_size", 2, False)
+    assert item.z == pytest.approx((0.5 - 0.15) / (np.sqrt(2.0) * 0.05))
+    assert item.p_value == pytest.approx(2.0 * 7.4e-7, rel=0.05)
+    assert item.change == "changed"

@@ -51,6 +51,12 @@ class Explanation:
         """Of the effect, for a reader too: "fitting_leakage lower"."""
         return f"{self.effect} {self.signal}" if self.signal else self.effect
 
+    @property
+    def sizes(self) -> tuple[Estimate, ...]:
+        """The first parameter, and what else is a term that is absent otherwise, those with a standard error."""
+        told = [e for e in self.estimates if math.isfinite(e.shift) and e.standard_error > 0.0]
+        return tuple(e for e in told if e is self.estimates[0] or e.neutral == 0.0)
+
 
 @dataclass(frozen=True)
 class Answer:

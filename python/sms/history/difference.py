@@ -5,6 +5,10 @@ nothing states of each effect the shift that would have fitted its records best;
 it is compared with that. Being named by one of the two selects such a pair: of an effect at its limit every second
 pair is of this sort, and the differences that are large are among them. So their p-value counts twice.
 
+An effect may have more than one size: a supply line's pressure loss is linear in the flow, turbulent, or both. What
+only one diagnosis names is compared by the size that is farthest from nothing, and the p-value counts as often as there
+are sizes.
+
 Where there is no such estimate, it is only known that the effect is not beyond the size from which the records would
 have shown it, the limit L. So only what goes beyond L counts: with the size s that the other names, (|s| - L) over
 sqrt(se^2 + (L / 3)^2), L being three standard errors. This holds its level although it is the size that decides what is
@@ -72,6 +76,8 @@ class Item:
     """The diagnosis that does not name it."""
     selected: bool = False
     """It is compared since one of the two names it: its p-value is that of the difference twice."""
+    chosen_from: int = 1
+    """Of so many sizes of the effect the one farthest from nothing: its p-value counts as often."""
     p_value: float = math.nan
     p_holm: float = math.nan
     matters: float = 0.0
@@ -201,14 +207,18 @@ def _two_estimates(
 
 def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool) -> Item:
     """An effect that only one of the two names, `own`; `other` does not."""
-    size = named.estimates[0]
-    if (unnamed := other.not_named(named)) is not None:
+    sizes = named.sizes
+    size = max(sizes, key=lambda e: abs(e.shift) / e.standard_error, default=named.estimates[0])
+    chosen_from = max(len(sizes), 1)
+    first = size is named.estimates[0]
+    if first and (unnamed := other.not_named(named)) is not None:
         a, b = (unnamed, size) if named_in_b else (size, unnamed)
         reason = f"{other.source} does not name it; in brackets is the size that would fit its records best"
         item = _two_estimates("cause", named.key, named.title, a, b, abs(size.shift), reason)
-        return replace(item, absent="a" if named_in_b else "b", selected=True)
+        absent: Literal["a", "b"] = "a" if named_in_b else "b"
+        return replace(item, absent=absent, selected=True, chosen_from=chosen_from)
     sign = 1.0 if named_in_b else -1.0
-    limit, reason = limit_of(named, own, other)
+    limit, reason = limit_of(named, size, own, other)
     neutral = Estimate(size.parameter, size.unit, size.neutral, limit / DETECTION, size.neutral)
     a, b = (neutral, size) if named_in_b else (size, neutral)
     error = math.hypot(size.standard_error, limit / DETECTION)
@@ -221,19 +231,21 @@ def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool)
         "cause", named.key, named.title, size.parameter, size.unit, a.value, a.standard_error,
         b.value, b.standard_error, middle, middle - reach, middle + reach, error,
         beyond / error, "cannot be told", reason, matters=abs(size.shift),
-        absent="a" if named_in_b else "b",
+        absent="a" if named_in_b else "b", chosen_from=chosen_from,
     )  # fmt: skip
 
 
-def limit_of(named: Explanation, own: Answer, other: Answer) -> tuple[float, str]:
-    """The shift up to which the other diagnosis may have missed it, and what that number is from; NaN if unknown."""
+def limit_of(named: Explanation, size: Estimate, own: Answer, other: Answer) -> tuple[float, str]:
+    """The shift of a size up to which the other diagnosis may have missed the effect, and what that number is from; NaN
+    if unknown."""
     if not other.judges:
         return math.nan, f"{other.source} names no cause, its verdict is {other.verdict}"
     if (why := other.not_testable.get(named.key)) is not None:
         return math.nan, f"{other.source} could not have seen it, {why}"
-    if math.isfinite(limit := other.limits.get(named.key, math.nan)):
+    limit = other.limits.get(named.key, math.nan)
+    if size is named.estimates[0] and math.isfinite(limit):
         return limit, ""
-    return DETECTION * coarser(own, other) * named.estimates[0].standard_error, (
+    return DETECTION * coarser(own, other) * size.standard_error, (
         f"{other.source} does not say from which size it would show it; three standard errors of the other diagnosis "
         "are taken, times how much larger the errors are of what both estimate"
     )
@@ -279,7 +291,9 @@ def _model(a: Answer, b: Answer) -> Iterator[Item]:
 def judged(items: Sequence[Item]) -> list[Item]:
     """The items with their p values and what follows; their `smallest` is a standard error until then."""
     p_values = [
-        min(two_sided(i.z) * (2.0 if i.selected else 1.0), 1.0) if math.isfinite(i.z) else math.nan
+        min(two_sided(i.z) * i.chosen_from * (2.0 if i.selected else 1.0), 1.0)
+        if math.isfinite(i.z)
+        else math.nan
         for i in items
     ]
     seen = seen_from(int(np.isfinite(p_values).sum()))
