@@ -14,6 +14,7 @@ from sms.diagnosis.hypothesis import (
     Fitted,
     Healthy,
     Hypothesis,
+    fit,
     fit_with_discrepancy,
     weights_of,
 )
@@ -37,7 +38,7 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     """
     assert data.reference is not None
     h, runs = hypothesis, data.reference
-    fitted = fit_with_discrepancy(h, runs, alike=True)
+    fitted = _fitted(h, runs)
     jacobian = fitted.whiten(fitted.fit.jacobian)
     residual = fitted.whiten(fitted.fit.residual)
     pull = weights_of(h, list(h.free))
@@ -59,6 +60,16 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     known = h.known | deviation
     machine = replace(h, start=start, free=free, known=known, joint=joint, inflation=inflation)
     return machine, replace(data, healthy=_healthy(fitted, residual, data, inflation))
+
+
+def _fitted(hypothesis: Hypothesis, runs: Runs) -> Fitted:
+    """Generalised least squares from what is declared. That may be off by so much that all it leaves counts as
+    discrepancy, beside which nothing moves; then from least squares."""
+    fitted = fit_with_discrepancy(hypothesis, runs, alike=True)
+    if any(fitted.params[n] != hypothesis.start[n] for n in hypothesis.free):
+        return fitted
+    plainly = fit(hypothesis, runs, may_set_aside=True)
+    return fit_with_discrepancy(hypothesis, runs, plainly.params, alike=True)
 
 
 def _inflation(jacobian: Array, residual: Array, pull: Array, runs: Runs) -> float:
