@@ -38,7 +38,7 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     """
     assert data.reference is not None
     h, runs = hypothesis, data.reference
-    fitted = _fitted(h, runs)
+    fitted = _fitted_when_well(h, runs)
     jacobian = fitted.whiten(fitted.fit.jacobian)
     residual = fitted.whiten(fitted.fit.residual)
     pull = weights_of(h, list(h.free))
@@ -62,9 +62,9 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     return machine, replace(data, healthy=_healthy(fitted, residual, data, inflation))
 
 
-def _fitted(hypothesis: Hypothesis, runs: Runs) -> Fitted:
+def _fitted_when_well(hypothesis: Hypothesis, runs: Runs) -> Fitted:
     """Generalised least squares from what is declared. That may be off by so much that all it leaves counts as
-    discrepancy, beside which nothing moves; then from least squares."""
+    discrepancy, beside which nothing moves; then from ordinary least squares."""
     fitted = fit_with_discrepancy(hypothesis, runs, alike=True)
     if any(fitted.params[n] != hypothesis.start[n] for n in hypothesis.free):
         return fitted

@@ -207,6 +207,7 @@ def _two_estimates(
 
 def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool) -> Item:
     """An effect that only one of the two names, `own`; `other` does not."""
+    absent: Literal["a", "b"] = "a" if named_in_b else "b"
     sizes = named.sizes
     size = max(sizes, key=lambda e: abs(e.shift) / e.standard_error, default=named.estimates[0])
     chosen_from = max(len(sizes), 1)
@@ -215,7 +216,6 @@ def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool)
         a, b = (unnamed, size) if named_in_b else (size, unnamed)
         reason = f"{other.source} does not name it; in brackets is the size that would fit its records best"
         item = _two_estimates("cause", named.key, named.title, a, b, abs(size.shift), reason)
-        absent: Literal["a", "b"] = "a" if named_in_b else "b"
         return replace(item, absent=absent, selected=True, chosen_from=chosen_from)
     sign = 1.0 if named_in_b else -1.0
     limit, reason = limit_of(named, size, own, other)
@@ -231,7 +231,7 @@ def _one_sided(named: Explanation, own: Answer, other: Answer, named_in_b: bool)
         "cause", named.key, named.title, size.parameter, size.unit, a.value, a.standard_error,
         b.value, b.standard_error, middle, middle - reach, middle + reach, error,
         beyond / error, "cannot be told", reason, matters=abs(size.shift),
-        absent="a" if named_in_b else "b", chosen_from=chosen_from,
+        absent=absent, chosen_from=chosen_from,
     )  # fmt: skip
 
 
