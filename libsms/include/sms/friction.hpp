@@ -115,6 +115,12 @@ S exponential_friction(const Params<S>& p, const S& velocity) {
   return p.exponential_friction_force * (exp(growth < S(50) ? growth : S(50)) - S(1));
 }
 
+// Its slope over speed, N s/m.
+template <typename S>
+S exponential_friction_slope(const Params<S>& p, const S& velocity) {
+  return p.exponential_friction_rate * (exponential_friction(p, velocity) + p.exponential_friction_force);
+}
+
 // Growth of dry friction where the bore is narrower than at mid-stroke, 1 without position_dependent_friction.
 template <typename S>
 S position_factor(const Params<S>& p, const Piston<S>& piston) {

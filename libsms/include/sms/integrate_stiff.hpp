@@ -104,7 +104,7 @@ ActuatorStiffness<S> actuator_stiffness(const Params<S>& p, const ActuatorLaws& 
   const FrictionLaw law = laws.friction;
   const S& extension = a.piston.extension;
   const S speed = abs(a.piston.velocity);
-  S damping = p.viscous_friction;
+  S damping = p.viscous_friction + exponential_friction_slope(p, a.piston.velocity);
   if (law != FrictionLaw::dahl && law != FrictionLaw::lugre && speed < p.stiction_velocity) {
     const S steep = S(1.5707963267948966) / p.stiction_velocity;
     damping += p.coulomb_force * steep * cos(steep * speed);
