@@ -9,6 +9,7 @@ from sms.diagnosis.adequacy.repeatability import repeatability
 from sms.estimation.block_statistics import (
     covariance_from,
     covariance_of,
+    leveraged_covariance,
     merge_windows,
     project_off,
     resampled,
@@ -117,6 +118,44 @@ def test_what_is_declared_of_a_twin_counts_in_a_standard_error(rng: np.random.Ge
         departures.append(beta[0] - truth[0])
         errors.append(np.sqrt(covariance[0, 0]))
     assert 0.8 < np.mean(errors) / np.std(departures) < 1.25
+
+
+def test_a_block_is_as_large_as_if_it_had_no_part_in_the_fit(rng: np.random.Generator) -> None:
+    """CR2 as it is defined, with the matrices that the sum over parameters avoids."""
+    jacobian, residual = rng.normal(size=(60, 7)), rng.normal(size=60)
+    block, known, weight = np.repeat(np.arange(6), 10), 2.0 * np.eye(7), 1.7
+    scale = 10.0 ** rng.uniform(-6.0, 6.0, 7)
+    bread = np.linalg.inv(jacobian.T @ jacobian + weight * known)
+    scatter = weight**2 * known
+    for number in range(6):
+        own = jacobian[block == number]
+        value, vector = np.linalg.eigh(np.eye(10) - own @ bread @ own.T)
+        score = own.T @ ((vector / np.sqrt(value)) @ vector.T @ residual[block == number])
+        scatter = scatter + np.outer(score, score)
+    units = np.outer(scale, scale)
+    found = leveraged_covariance(jacobian * scale, residual, block, known * units, weight)
+    np.testing.assert_allclose(found * units, bread @ scatter @ bread, rtol=1e-9, atol=1e-15)
+
+
+def test_errors_hold_with_more_parameters_than_blocks(rng: np.random.Generator) -> None:
+    """Thirty numbers known roughly before, twenty blocks, each with a level of all its columns. The fit has made the
+    residuals small that say how sure it is; most of that is made up for."""
+    blocks, samples, count, width = 20, 60, 30, 1.0
+    block = np.repeat(np.arange(blocks), samples)
+    known = np.diag(np.full(count, width**-2))
+    leveraged, plain = [], []
+    for _ in range(60):
+        columns = np.repeat(rng.normal(size=(blocks, count)), samples, axis=0)
+        columns += 0.3 * rng.normal(size=columns.shape)
+        truth = width * rng.normal(size=count)
+        noise = [coloured(rng, samples, 0.97) for _ in range(blocks)]
+        y = columns @ truth + np.concatenate(noise)
+        beta = np.linalg.solve(columns.T @ columns + known, columns.T @ y)
+        left = y - columns @ beta
+        for of, z in ((leveraged_covariance, leveraged), (covariance_of, plain)):
+            z.append((beta - truth) / np.sqrt(np.diag(of(columns, left, block, known, 1.0))))
+    too_small, more_so = (np.sqrt(np.mean(np.square(z))) for z in (leveraged, plain))
+    assert 1.0 < too_small < 2.5 < more_so
 
 
 def test_projection_leaves_nothing_of_what_the_nuisance_spans(rng: np.random.Generator) -> None:

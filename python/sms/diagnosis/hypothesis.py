@@ -14,7 +14,12 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
-from sms.estimation.block_statistics import covariance_from, covariance_of, project_off
+from sms.estimation.block_statistics import (
+    covariance_from,
+    covariance_of,
+    leveraged_covariance,
+    project_off,
+)
 from sms.estimation.discrepancy import Discrepancy
 from sms.estimation.least_squares import MOST_STEPS, Free, Solution, WindowFit
 from sms.estimation.nuisance import Joint, Nuisance, pulls
@@ -35,9 +40,6 @@ ALWAYS_UNCERTAIN = ("stiction_shape", "end_stop_stiffness", "end_stop_damping", 
 """Parameters that a simulation may move although no rig file mentions them: their uncertainty is that of params.def."""
 TURNS, SETTLED = 2, 0.2
 """Of parameters and discrepancy, each for the other; and the change of the logarithm of tau that ends it. Run time."""
-MOST_INFLATED = 10.0
-"""How many times larger a standard error may be by the scatter of blocks than by the noise: with few blocks, that
-scatter is hardly known itself. Judgement."""
 CURVES = (*MAPS, *LINEARITY)
 WIDE = 3.0
 """Half widths that a curve may be off somewhere: what is declared of a map or a sensor's line is that of most of it,
@@ -310,7 +312,8 @@ def cost_of_departure(fitted: Fitted) -> float:
 
 
 def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
-    """(free, free). Without a declared noise the blocks, and what is declared, alone say how sure an estimate is."""
+    """(free, free), by the scatter of blocks; by the noise where it is declared and says more, since few blocks hardly
+    tell their scatter."""
     found, covariance = fitted.fit, np.zeros((pull.shape[1], pull.shape[1]))
     if not runs.whitened:
         moved = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
@@ -324,11 +327,11 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     jacobian, residual = fitted.whiten(found.jacobian), fitted.whiten(found.residual)
     bread = covariance_from(jacobian.T @ jacobian + pull.T @ pull)
     noise = max(float(np.mean(residual**2)), 1e-12) * fitted.hypothesis.inflation
-    robust = covariance_of(jacobian, residual, runs.block) if pull.size else bread
-    # With more parameters than windows the robust one has too low a rank: the larger of the two variances holds.
+    weight = fitted.hypothesis.sample**2 * fitted.hypothesis.inflation
+    known = pull.T @ pull / weight
+    robust = leveraged_covariance(jacobian, residual, runs.block, known, weight)
     by_noise, by_blocks = np.diag(noise * bread), np.diag(robust)
-    least = np.maximum(by_blocks / MOST_INFLATED**2, 1e-300)
-    inflate = np.sqrt(np.maximum(by_blocks / np.maximum(by_noise, least), 1.0))
+    inflate = np.sqrt(np.maximum(by_blocks / np.maximum(by_noise, 1e-300), 1.0))
     return np.asarray(noise * bread * np.outer(inflate, inflate))
 
 

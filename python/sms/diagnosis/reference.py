@@ -8,7 +8,6 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.diagnosis.hypothesis import (
-    MOST_INFLATED,
     WIDE,
     Data,
     Fitted,
@@ -26,6 +25,9 @@ SAME_MACHINE = 0.03
 """Of what is declared: by how much a number may differ between a day when the machine was well and today. Judgement: an
 uncertainty is what is not known of a number, and hardly any of that is its change.
 """
+MOST_INFLATED = 100.0
+"""How many times larger variances may be by the scatter of blocks than by the noise: with few blocks, that scatter is
+hardly known itself. Judgement."""
 
 
 def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data]:
@@ -93,7 +95,7 @@ def _inflation(jacobian: Array, residual: Array, pull: Array, runs: Runs) -> flo
         return 1.0
     ratio = np.einsum("ki,kl,li->i", axes, scatter, axes)[told] / share[told]
     mean = np.average(np.log(np.maximum(ratio, 1e-300)), weights=share[told])
-    return float(np.clip(np.exp(mean), 1.0, MOST_INFLATED**2))
+    return float(np.clip(np.exp(mean), 1.0, MOST_INFLATED))
 
 
 def _healthy(fitted: Fitted, white: Array, data: Data, inflation: float) -> Healthy:

@@ -19,6 +19,8 @@ from scipy.sparse import csr_array
 
 from sms.arrays import Array, Index
 
+MOST_LEVERAGE = 0.999
+"""Of a block on its own fit. Numerics: what a parameter of its own makes of it is not known."""
 BLOCK = 5.0
 """Correlation lengths of the noise that a block holds at least."""
 
@@ -96,6 +98,31 @@ def scatter_of_scores(jacobian: Array, residual: Array, block: Index) -> Array:
         scores[:, column] = np.bincount(block, jacobian[:, column] * residual, groups)
     small_sample = groups / max(groups - 1, 1) * (n - 1) / max(n - k, 1)
     return np.asarray(small_sample * scores.T @ scores)
+
+
+def leveraged_covariance(
+    jacobian: Array, residual: Array, block: Index, known: Array, weight: float = 1.0
+) -> Array:
+    """The same (k, k) with each block's residuals as large as they would be had it had no part in the fit, which counts
+    where parameters are many for the number of blocks: (I - J_b B J_b')^(-1/2) r_b, B the inverse of all that the fit
+    minimised (CR2; Bell and McCaffrey 2002).
+    """
+    gram = jacobian.T @ jacobian + weight * known
+    scale = np.maximum(np.sqrt(np.diag(gram)), 1e-150)
+    units = np.outer(scale, scale)
+    bread = np.linalg.pinv(gram / units, rcond=1e-12, hermitian=True)
+    value, vector = np.linalg.eigh(bread)
+    root = vector * np.sqrt(np.maximum(value, 0.0))
+    scores = []
+    for rows in np.split(np.argsort(block, kind="stable"), np.cumsum(np.bincount(block))[:-1]):
+        own = jacobian[rows] / scale
+        inner, score = own.T @ own, own.T @ residual[rows]
+        leverage, axes = np.linalg.eigh(root.T @ inner @ root)
+        left = np.sqrt(1.0 - np.clip(leverage, 0.0, MOST_LEVERAGE))
+        grown = axes @ ((axes.T @ (root.T @ score)) / (left * (1.0 + left)))
+        scores.append(score + inner @ (root @ grown))
+    scatter = np.transpose(scores) @ scores + weight**2 * known / units
+    return np.asarray(bread @ scatter @ bread / units)
 
 
 def covariance_from(information: Array) -> Array:
