@@ -18,7 +18,7 @@ ExternalProject_Add(core_avx2
   CMAKE_ARGS -C "${CMAKE_BINARY_DIR}/CMakeInit.txt" ${arguments} "-DCMAKE_INSTALL_PREFIX=${second}/installed"
   BUILD_ALWAYS ON
   INSTALL_COMMAND "${CMAKE_COMMAND}" --install . --strip
-  DEPENDS _core)  # one after the other: a compiler takes up to a gigabyte
+  DEPENDS _core)  # one after the other: a compiler takes up to 1.6 GB
 install(FILES "${second}/installed/sms/_core${PYTHON_MODULE_EXTENSION}" DESTINATION sms
         RENAME "_core_avx2${PYTHON_MODULE_EXTENSION}" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ
         GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)

@@ -1,6 +1,7 @@
 // Many poses at once: four side by side where the processor can, one after the other else; the same bits either way.
 #include <cstddef>
 
+#include "sms/inverse_kinematics.hpp"
 #include "sms/kinematics.h"
 #include "sms/lanes.hpp"
 

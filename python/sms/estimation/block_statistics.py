@@ -103,9 +103,9 @@ def scatter_of_scores(jacobian: Array, residual: Array, block: Index) -> Array:
 def leveraged_covariance(
     jacobian: Array, residual: Array, block: Index, known: Array, weight: float = 1.0
 ) -> Array:
-    """The same (k, k) with each block's residuals as large as they would be had it had no part in the fit, which counts
-    where parameters are many for the number of blocks: (I - J_b B J_b')^(-1/2) r_b, B the inverse of all that the fit
-    minimised (CR2; Bell and McCaffrey 2002).
+    """Covariance (k, k) as by `covariance_of`, each block's residuals as large as they would be had it had no part in
+    the fit: (I - J_b B J_b')^(-1/2) r_b, with B the inverse of J'J and of what was known (CR2; Bell and McCaffrey
+    2002). That counts where parameters are many for the number of blocks.
     """
     gram = jacobian.T @ jacobian + weight * known
     scale = np.maximum(np.sqrt(np.diag(gram)), 1e-150)
