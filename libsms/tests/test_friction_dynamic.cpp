@@ -221,7 +221,7 @@ TEST_CASE("three coupled pistons: Newton's law for each with its own friction, w
       drive(i) = random.uniform(-300.0, 300.0);
     }
     const sms::Mat3<double> mass = root * root.transpose() + 5.0 * sms::Mat3<double>::Identity();
-    sms::Vec3<double> a;
+    sms::Vec3<double> a(0.0, 0.0, 0.0);
     REQUIRE(sms::coupled_accelerations<double>({p, p, p}, sms::FrictionLaw::acceleration_dependent, piston, mass, drive,
                                                a) == SMS_OK);
     const sms::Vec3<double> left = drive - mass * a;  // what friction has to take up
@@ -244,11 +244,13 @@ TEST_CASE("three pistons that are not coupled are three single ones; a mass that
   for (int run = 0; run < 1000; ++run) {
     const Piston piston[3] = {at(random.uniform(-0.2, 0.2)), at(random.uniform(-0.2, 0.2)), at(0.0)};
     const sms::Vec3<double> drive(random.uniform(-300.0, 300.0), random.uniform(-300.0, 300.0), 50.0);
-    sms::Vec3<double> a;
+    sms::Vec3<double> a(0.0, 0.0, 0.0);
+    const double mass = 106.0;
     REQUIRE(sms::coupled_accelerations<double>({p, p, p}, sms::FrictionLaw::acceleration_dependent, piston,
-                                               106.0 * sms::Mat3<double>::Identity(), drive, a) == SMS_OK);
+                                               mass * sms::Mat3<double>::Identity(), drive, a) == SMS_OK);
     for (int i = 0; i < 3; ++i) {
-      CHECK(a(i) == doctest::Approx(sms::acceleration_against_friction(p, piston[i], 106.0, drive(i))).epsilon(1e-11));
+      const double alone = sms::acceleration_against_friction(p, piston[i], mass, drive(i));
+      CHECK(mass * std::abs(a(i) - alone) <= 1e-10 * (mass * std::abs(alone) + std::abs(drive(i))));  // as above
     }
   }
   const Piston piston[3] = {at(0.1), at(0.1), at(0.1)};
