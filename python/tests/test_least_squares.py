@@ -107,6 +107,9 @@ def test_windows_that_break_off_their_slopes_are_set_aside_if_they_are_few(
     found = fit_windows(problem, start, free, window=problem.window)
     values = [found.params[n] for n in Breaking.names]
     assert (np.abs(np.subtract(values, (40.0, 60.0))).max() < 1e-3) == moves
+    assert (found.counted is not None) == (breaking > 0 and moves)
+    if found.counted is not None:
+        assert set(problem.window) - set(problem.window[found.counted]) == set(range(breaking))
     if breaking:  # and the fit that counts all windows does not move at all
         held = fit_windows(problem, start, free)
         assert [held.params[n] for n in Breaking.names] == [Breaking.begin, 50.0]

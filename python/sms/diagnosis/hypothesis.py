@@ -315,8 +315,8 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     """(free, free), by the scatter of blocks; by the noise where it is declared and says more, since few blocks hardly
     tell their scatter."""
     found, covariance = fitted.fit, np.zeros((pull.shape[1], pull.shape[1]))
+    moved = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
     if not runs.whitened:
-        moved = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
         if len(moved):
             weight = fitted.hypothesis.sample**2
             known = pull[:, moved].T @ pull[:, moved] / weight
@@ -325,12 +325,18 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
             )
         return covariance
     jacobian, residual = fitted.whiten(found.jacobian), fitted.whiten(found.residual)
+    block = runs.block
+    if isinstance(found, WindowFit) and found.counted is not None:
+        jacobian, residual, block = (x[found.counted] for x in (jacobian, residual, block))
     bread = covariance_from(jacobian.T @ jacobian + pull.T @ pull)
     noise = max(float(np.mean(residual**2)), 1e-12) * fitted.hypothesis.inflation
+    by_noise = np.diag(noise * bread)
+    # Where a bound holds a parameter its sensitivities are left in the residual: it had no part in the fit.
     weight = fitted.hypothesis.sample**2 * fitted.hypothesis.inflation
-    known = pull.T @ pull / weight
-    robust = leveraged_covariance(jacobian, residual, runs.block, known, weight)
-    by_noise, by_blocks = np.diag(noise * bread), np.diag(robust)
+    known = pull[:, moved].T @ pull[:, moved] / weight
+    robust = leveraged_covariance(jacobian[:, moved], residual, block, known, weight)
+    by_blocks = np.zeros(len(by_noise))
+    by_blocks[moved] = np.diag(robust)
     inflate = np.sqrt(np.maximum(by_blocks / np.maximum(by_noise, 1e-300), 1.0))
     return np.asarray(noise * bread * np.outer(inflate, inflate))
 

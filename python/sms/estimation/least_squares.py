@@ -68,6 +68,8 @@ class WindowFit:
     jacobian: Array
     at_bound: list[bool]
     converged: bool
+    counted: Index | None = None
+    """The rows of the windows that were not set aside; None: all."""
 
 
 @dataclass(frozen=True)
@@ -256,12 +258,14 @@ def fit_windows(
     if not at.exact and worked_out < most_steps:
         objective.work_out(at, kept)
     held = objective.at_bound(at.value)
+    counted = objective.counted(np.arange(len(at.residual)))
     return WindowFit(
         objective.params(at.value),
         np.asarray(at.residual),
         np.asarray(at.slope / objective.scale),
         held.tolist(),
         converged,
+        counted if len(counted) < len(at.residual) else None,
     )
 
 
