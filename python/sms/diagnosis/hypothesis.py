@@ -315,11 +315,12 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     """(free, free), by the scatter of blocks; by the noise where it is declared and says more, since few blocks hardly
     tell their scatter."""
     found, covariance = fitted.fit, np.zeros((pull.shape[1], pull.shape[1]))
+    # Where a bound holds a parameter its sensitivities are left in the residual: it had no part in the fit.
     moved = np.flatnonzero(~np.array(found.at_bound, dtype=bool))
+    weight = fitted.hypothesis.sample**2 * fitted.hypothesis.inflation
+    known = pull[:, moved].T @ pull[:, moved] / weight
     if not runs.whitened:
         if len(moved):
-            weight = fitted.hypothesis.sample**2
-            known = pull[:, moved].T @ pull[:, moved] / weight
             covariance[np.ix_(moved, moved)] = covariance_of(
                 found.jacobian[:, moved], found.residual, runs.block, known, weight
             )
@@ -331,9 +332,6 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     bread = covariance_from(jacobian.T @ jacobian + pull.T @ pull)
     noise = max(float(np.mean(residual**2)), 1e-12) * fitted.hypothesis.inflation
     by_noise = np.diag(noise * bread)
-    # Where a bound holds a parameter its sensitivities are left in the residual: it had no part in the fit.
-    weight = fitted.hypothesis.sample**2 * fitted.hypothesis.inflation
-    known = pull[:, moved].T @ pull[:, moved] / weight
     robust = leveraged_covariance(jacobian[:, moved], residual, block, known, weight)
     by_blocks = np.zeros(len(by_noise))
     by_blocks[moved] = np.diag(robust)

@@ -107,10 +107,8 @@ def leveraged_covariance(
     the fit: (I - J_b B J_b')^(-1/2) r_b, with B the inverse of J'J and of what was known (CR2; Bell and McCaffrey
     2002). That counts where parameters are many for the number of blocks.
     """
-    gram = jacobian.T @ jacobian + weight * known
-    scale = np.maximum(np.sqrt(np.diag(gram)), 1e-150)
+    scale, bread = _scaled_inverse(jacobian.T @ jacobian + weight * known)
     units = np.outer(scale, scale)
-    bread = np.linalg.pinv(gram / units, rcond=1e-12, hermitian=True)
     value, vector = np.linalg.eigh(bread)
     root = vector * np.sqrt(np.maximum(value, 0.0))
     scores = []
@@ -127,9 +125,15 @@ def leveraged_covariance(
 
 def covariance_from(information: Array) -> Array:
     """(k, k): the inverse of an information matrix (k, k), whatever the units of its rows; 0 where there is none."""
+    scale, inverse = _scaled_inverse(information)
+    return np.asarray(inverse / np.outer(scale, scale))
+
+
+def _scaled_inverse(information: Array) -> tuple[Array, Array]:
+    """Units (k,) in which its diagonal is one, and its inverse (k, k) in these."""
     scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
     scaled = information / np.outer(scale, scale)
-    return np.asarray(np.linalg.pinv(scaled, rcond=1e-12, hermitian=True) / np.outer(scale, scale))
+    return scale, np.asarray(np.linalg.pinv(scaled, rcond=1e-12, hermitian=True))
 
 
 def resampled(record: Index, block: Index, rng: np.random.Generator, draws: int = 999) -> Array:
