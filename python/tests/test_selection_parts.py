@@ -76,6 +76,43 @@ def test_what_is_no_worse_than_the_last_cause_shares_its_class(
     assert all(t.support == pytest.approx(1.0 / 3.0) for t in members)
 
 
+def test_what_leaves_less_at_the_end_of_what_is_plausible_shares_the_class(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A cylinder without Coulomb friction fits at 0 N, and pressure-dependent friction was named alone in its place."""
+    monkeypatch.setattr(
+        judgement, "implausible", lambda effect, fitted, data: effect.end and "at the end"
+    )
+    monkeypatch.setattr(judgement, "_similarity", lambda one, other, *_: other.effect.cosine)
+    model, candidate = cast(Any, "model as it stands"), cast(Any, "with the effect")
+
+    def trial(
+        name: str, lower: float, end: bool = True, cosine: float = 1.0, gain: float = 0.9
+    ) -> Trial:
+        effect = SimpleNamespace(
+            id=name, key=name, parameters=(name,), end=end and name, cosine=cosine
+        )
+        made = Trial(cast(Any, effect), candidate, 1e-9, np.zeros(1))
+        made.lower, made.gain, made.seen_share, made.gain_interval = lower, gain, 0.9, (0.5, 1.0)
+        made.accepted = not end
+        return made
+
+    named = trial("named", 5.0, end=False)
+    tried = [
+        named,
+        trial("leaves less", 6.0),
+        trial("leaves more", 4.0),
+        trial("changes otherwise", 7.0, cosine=0.2),
+        trial("worse on validation records", 8.0, gain=-0.1),
+    ]
+    by_chance = trial("by chance", 9.0)
+    by_chance.p_value = 0.5
+    members = judgement.ambiguity_group([*tried, by_chance], model, cast(Any, None))
+    assert [m.effect.id for m in members] == ["named", "leaves less"]
+    assert members[1].reason == "at the end, and leaves less than what is named"
+    assert [m.support for m in members] == [0.5, 0.5]
+
+
 @pytest.mark.parametrize(
     ("worse_by", "class_of"),
     [

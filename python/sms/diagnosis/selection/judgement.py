@@ -205,8 +205,11 @@ def _untenable(trial: Trial, data: Data, few: bool = False) -> str:
 
     few: that it takes most of what is left on the validation records, but for few windows, is no objection.
     """
-    if beyond := implausible(trial.effect, trial.fitted, data):
-        return beyond
+    return implausible(trial.effect, trial.fitted, data) or _by_chance(trial, few)
+
+
+def _by_chance(trial: Trial, few: bool = False) -> str:
+    """That it may be chance that it takes what it takes, if so. few: as above."""
     if trial.p_value > SIGNIFICANT:
         return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
     if trial.gain_interval[0] <= 0.0 and not (trial.cross_validated or few):
@@ -246,7 +249,33 @@ def _taken(trial: Trial) -> str:
 def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
     """The best accepted trial, and those whose predictions change alike and are no worse; or none."""
     accepted = sorted((t for t in trials if t.accepted), key=lambda t: -t.lower)
-    return alike(accepted, current, data) if accepted else []
+    if not accepted:
+        return []
+    members = alike(accepted, current, data)
+    better = _better_at_the_end(trials, members[0], current, data)
+    members += better[: max(MOST_MEMBERS - len(members), 0)]
+    for trial in members:
+        trial.support = 1.0 / len(members)
+    return members
+
+
+def _better_at_the_end(
+    trials: Sequence[Trial], named: Trial, current: Fitted, data: Data
+) -> list[Trial]:
+    """Trials with nothing against them but that they fit best at the end of what is plausible, whose predictions change
+    as those of what is named, and which leave less: a cylinder without any Coulomb friction is at that end, and the
+    next best explanation must not be named without it.
+    """
+    found = []
+    for trial in trials:
+        if trial.accepted or trial.fitted is current or trial.lower <= named.lower:
+            continue
+        end = implausible(trial.effect, trial.fitted, data)
+        alone = end and not _by_chance(trial) and min(trial.seen_share, trial.gain) > 0.0
+        if alone and _similarity(named, trial, current, data) > TWINS:
+            trial.reason = f"{end}, and leaves less than what is named"
+            found.append(trial)
+    return sorted(found, key=lambda t: -t.lower)
 
 
 def alike(accepted: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:
