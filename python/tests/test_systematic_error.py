@@ -69,3 +69,23 @@ def test_what_no_parameter_explains_is_not_put_into_numbers_that_are_known(tmp_p
     assert held < 0.5 * held_by_plain
     for name in ("mass_flow_gain", "valve_centre"):
         assert found.standard_error(name) > plain.standard_error(name)
+
+
+@pytest.mark.skipif(not _core.has_estimation, reason="built without Ceres")
+def test_where_rounding_is_not_declared_half_a_step_of_the_zero_is_counted(tmp_path: Path) -> None:
+    """A converter that rounds down put a supply pressure half a step too low, with a twentieth of that as its error.
+
+    Here it is an extension's: half a step of it times the piston's area is as much of the dead volume.
+    """
+    file = write_bench(tmp_path, 42, {})
+    text, errors = file.read_text(), []
+    for rounding in ('rounding = "nearest"', ""):
+        step = f'"0.07 mm", resolution = "1 mm"{", " * bool(rounding)}{rounding}'
+        file.write_text(text.replace('"0.07 mm"', step))
+        plain, data = fitted_baseline(file)
+        zeros = {} if rounding else {"sensor_offset_extension": pytest.approx(5e-4)}
+        assert data.rig.unknown_zeros == zeros
+        found = generalised(plain, data)
+        errors.append(found.standard_error("dead_volume_lower"))
+    area = 0.25 * np.pi * data.rig.declared("bore_diameter").value ** 2
+    assert np.sqrt(errors[1] ** 2 - errors[0] ** 2) == pytest.approx(5e-4 * area, rel=0.1)

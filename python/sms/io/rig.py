@@ -117,6 +117,16 @@ class Rig:
         return Declaration(self.table[name].default, self.table[name].uncertainty)
 
     @property
+    def unknown_zeros(self) -> dict[str, float]:
+        """Parameter -> half a step, of sensors of which it is not declared whether their converter rounds down."""
+        zeros = {
+            f"sensor_offset_{without_leg(signal)}": 0.5 * source.resolution
+            for signal, source in self.signals.items()
+            if source.resolution > 0.0 and source.rounding is None
+        }
+        return {name: half for name, half in zeros.items() if name in self.table}
+
+    @property
     def table(self) -> Mapping[str, Parameter]:
         """Bounds and units of every parameter that the model has."""
         return parameters_of(self.kind)

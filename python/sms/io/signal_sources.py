@@ -37,7 +37,7 @@ class SignalSource:
     optional: bool = False  #: a record may lack this column
     noise: float | None = None  #: declared standard deviation of one sample, SI; None: not declared
     resolution: float = 0.0  #: one step of the converter, SI
-    rounding: Rounding = "nearest"  #: of the converter
+    rounding: Rounding | None = None  #: of the converter; None: not declared
     range: tuple[float, float] | None = (
         None  #: the smallest and largest reading, SI; None: not declared
     )
@@ -99,7 +99,7 @@ def _signal(signal: str, table: SignalTable, path: Path) -> SignalSource:
         table.gauge,
         noise=noise,
         resolution=resolution,
-        rounding=table.rounding or "nearest",
+        rounding=table.rounding,
         range=_range(signal, table, where),
         hold=table.hold,
     )

@@ -6,7 +6,8 @@ imitate. So each equation may also have an unknown function of each signal (loca
 process along it that bends over half the signal's range, with the standard deviation under which the residual is most
 likely (estimation/variance_components.py). To first order that gives the estimates with these functions beside the
 parameters: a covariance, and how far the estimates would move. The stated variance is the sum of that covariance and of
-the square of the move.
+the square of the move. A zero that a converter's rounding leaves unknown adds its own part (a consider parameter of
+Schmidt's: not estimated, and counted).
 """
 
 from __future__ import annotations
@@ -118,8 +119,24 @@ def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
     free = list(fitted.hypothesis.free)
     place = [free.index(n) for n in fitted.movable]
     least = np.zeros(len(free))
-    least[place] = np.sqrt(np.diag(systematic.covariance) + systematic.move**2) / scale
+    variance = (np.diag(systematic.covariance) + systematic.move**2) / scale**2
+    least[place] = np.sqrt(variance + _of_unknown_zeros(fitted, nuisance, runs))
     return _less_sure(fitted, least)
+
+
+def _of_unknown_zeros(fitted: Fitted, nuisance: Nuisance, runs: Runs) -> Array:
+    """(movable,): the square of how far each estimate is off where converters round down whose rounding is not
+    declared: the zeros of these sensors are no parameters of the fit, and known to half a step.
+    """
+    half = {n: h for n, h in runs.rig.unknown_zeros.items() if n not in fitted.hypothesis.free}
+    if not half:
+        return np.zeros(len(fitted.movable))
+    _, raw = runs.problem.evaluate(fitted.params, list(half))
+    zeros = nuisance.with_declared(fitted.whiten(raw.astype(np.float64)))
+    stacked = np.vstack([nuisance.jacobian, nuisance.pull])
+    scale = np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
+    moves = np.linalg.lstsq(stacked / scale, zeros * np.array(list(half.values())), rcond=1e-12)[0]
+    return np.asarray(np.sum((moves / scale[:, None]) ** 2, axis=1))
 
 
 @dataclass(frozen=True)
