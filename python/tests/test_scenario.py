@@ -396,7 +396,7 @@ def test_ctrl_c_at_the_prompt(tmp_path: Path) -> None:
         text=True,
         preexec_fn=hear_ctrl_c,  # noqa: PLW1509
     ) as running:
-        time.sleep(6.0)
+        time.sleep(3.0)
         while running.poll() is None:
             running.send_signal(signal.SIGINT)
             try:
