@@ -228,6 +228,19 @@ def test_a_fit_to_reference_records_that_moves_nothing_begins_from_least_squares
 
 
 @pytest.mark.full
+@pytest.mark.skipif(
+    not FOREIGN.is_dir(), reason=f"the foreign records are not at hand (looked in {FOREIGN})"
+)
+def test_a_size_is_not_stated_from_a_fit_that_has_ended_in_no_minimum() -> None:
+    """The same bench without reference records: 73 mV with an error of 73 mV, and so no evidence."""
+    (cause,) = diagnose(FOREIGN / "set06" / "rig.toml").causes
+    assert cause.effect == "valve_centre_offset"
+    size = cause.parameters[0]
+    assert size.value == pytest.approx(5.0615, abs=2.0 * size.standard_error)
+    assert size.standard_error < 0.002
+
+
+@pytest.mark.full
 def test_with_reference_records_a_sensor_gain_is_found_that_other_numbers_can_make_up_for(
     tmp_path: Path,
 ) -> None:

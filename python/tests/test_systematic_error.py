@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from plant_support import LEAK, fitted_baseline, with_known_map, write_bench
 from sms import _core
+from sms.diagnosis.adequacy import systematic_error
 from sms.diagnosis.adequacy.systematic_error import Systematic, generalised, process
 from sms.diagnosis.hypothesis import cost_of_departure
 from sms.diagnosis.localisation.signal_functions import points
@@ -89,3 +92,34 @@ def test_where_rounding_is_not_declared_half_a_step_of_the_zero_is_counted(tmp_p
         errors.append(found.standard_error("dead_volume_lower"))
     area = 0.25 * np.pi * data.rig.declared("bore_diameter").value ** 2
     assert np.sqrt(errors[1] ** 2 - errors[0] ** 2) == pytest.approx(5e-4 * area, rel=0.1)
+
+
+def test_a_fit_that_ends_above_where_the_model_stood_begins_again_from_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A valve's centre off by 62 mV ended 73 mV off with 73 mV as its error, at seven times the least chi-square."""
+    minima = {"declared": 7.0, "fitted": 1.0, "worse": 8.0}
+    begun: list[str] = []
+
+    def at(params: str, left: float) -> Any:
+        solution = SimpleNamespace(residual=np.array([np.sqrt(left)]))
+        return SimpleNamespace(params=params, fit=solution, hypothesis=None)
+
+    def fit(hypothesis: object, runs: object, params: str, **options: object) -> Any:
+        begun.append(params)
+        return at(params, minima[params])
+
+    monkeypatch.setattr(systematic_error, "fit", fit)
+    monkeypatch.setattr(systematic_error, "departure", lambda hypothesis, params: 0.0)
+    discrepancy: Any = SimpleNamespace(whitener=SimpleNamespace(whiten=lambda residual: residual))
+
+    def found(stood: Any) -> str:
+        begun.clear()
+        start: Any = "declared"
+        end = systematic_error._from_either(stood, start, discrepancy, cast(Any, None))
+        return str(end.params)
+
+    assert found(at("fitted", 9.0)) == "declared"
+    assert begun == ["declared"]  # what stands above it is not tried
+    assert found(at("fitted", 2.0)) == "fitted"
+    assert found(at("worse", 2.0)) == "declared"

@@ -60,8 +60,9 @@ TANK = (
 )
 
 
-FLOW_MAP = 0.03
-"""Half width, as a share of the flow, within which the core takes the valve's map to be known."""
+FLOW_MAP = {0.6: 0.15, 0.75: 0.07, 0.95: 0.05, 1.25: 0.03, 1.8: 0.03, 3.0: 0.03}
+"""Opening (V from the centre) -> half width, as a share of the flow, within which the core takes the valve's map to be
+known; linear in between."""
 PRESSURES = ("chamber_pressure_lower", "chamber_pressure_upper", "tank_pressure")
 """The signals of pressure sensors; on the platform with the leg's number behind."""
 PRESSURE_SENSORS = {"offset": 1.0e3, "gain": 0.0025}

@@ -83,11 +83,29 @@ def rms_over(function: SmoothFunction, between: tuple[float, float, float]) -> f
 
 
 @dataclass(frozen=True)
+class Hat:
+    """On one side of 0, or both: a size at one of some ascending |x|, linear to zero at its neighbours, constant beyond
+    the ends."""
+
+    size: float
+    number: int
+    places: tuple[float, ...]
+    sides: tuple[float, ...]  # 1, -1
+
+    def __call__(self, x: Array) -> Array:
+        """Of the same shape."""
+        heights = np.where(np.arange(len(self.places)) == self.number, self.size, 0.0)
+        return np.where(
+            np.isin(np.sign(x), self.sides), np.interp(np.abs(x), self.places, heights), 0.0
+        )
+
+
+@dataclass(frozen=True)
 class MapErrors:
     """Relative errors of one axis."""
 
-    charge: SmoothFunction  # over the opening, V from the centre, signed
-    discharge: SmoothFunction
+    charge: SmoothFunction | Hat  # over the opening, V from the centre, signed
+    discharge: SmoothFunction | Hat
     friction: SmoothFunction  # over the speed, m/s, signed
     straight: bool = False  # the valve's tables are read straight between rows
 
@@ -98,19 +116,6 @@ class MapErrors:
 
 
 NOTHING = SmoothFunction(0.0, (0.0,), (0.0,))
-
-
-def cosines(size: float, between: tuple[float, float, float]) -> list[SmoothFunction]:
-    """Waves that together are a smooth random function of |x| with `size` as RMS, each with its standard deviation."""
-    _, high, length = between
-    waves = np.arange(20) * np.pi / (2.0 * high)
-    squares = np.where(waves > 0.0, 2.0, 1.0) * np.exp(-0.5 * (waves * length) ** 2)
-    squares /= squares[0] + 0.5 * squares[1:].sum()
-    return [
-        SmoothFunction(size * float(np.sqrt(square)), (float(wave),), (0.5 * np.pi,))
-        for wave, square in zip(waves, squares, strict=True)
-        if square > 1e-3 * squares[0]
-    ]
 
 
 @dataclass(frozen=True)
@@ -171,12 +176,15 @@ def draw_imperfection(
     )
 
 
-def map_modes(size: float, axes: int) -> list[Imperfection]:
-    """What the valves of one machine can be off by together, alike for either port: charging, discharging."""
-    of_flow = cosines(size, OPENING)
-    errors = [MapErrors(one, NOTHING, NOTHING) for one in of_flow]
-    errors += [MapErrors(NOTHING, one, NOTHING) for one in of_flow]
-    return [Imperfection(size, (e,) * axes, {}, 0.0, 0.0, False) for e in errors]
+def map_modes(known: Mapping[float, float], axes: int, alike: bool = False) -> list[Imperfection]:
+    """What the valves of one machine can be off by together, at each of the openings of which it is said how well the
+    flow is known: each of four edges by itself, since they are ground one by one, or those of both ports alike."""
+    sides = [(1.0, -1.0)] if alike else [(1.0,), (-1.0,)]
+    places = tuple(known)
+    hats = [Hat(size, n, places, s) for s in sides for n, size in enumerate(known.values())]
+    errors = [MapErrors(one, NOTHING, NOTHING) for one in hats]
+    errors += [MapErrors(NOTHING, one, NOTHING) for one in hats]
+    return [Imperfection(max(known.values()), (e,) * axes, {}, 0.0, 0.0, False) for e in errors]
 
 
 def bowed(signal: str, reading: Array, bow: float) -> Array:

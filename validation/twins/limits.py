@@ -14,8 +14,9 @@ and N a column for each of these in units of its standard deviation, the size co
 where sqrt(i) = SIGMAS (five standard deviations of the best estimate), and where the change that
 what is declared leaves is in at least one signal as large as FLOOR of the noise, and as what the
 drawn machines leave there: below that a cause drowns in the differences between two descriptions
-of one machine. Coloured noise counts as white noise of the same density at low frequency, which
-is on the safe side.
+of one machine. For the information each edge of a valve is off by itself; for these differences
+both ports are alike, so that they are not counted as known. Coloured noise counts as white noise
+of the same density at low frequency, which is on the safe side.
 
     python -m validation.twins limits bench
 
@@ -85,12 +86,13 @@ class Limits:
             **pressure_sensors(rig.signals),
         }
         self.names = list(widths)
-        self.declared = np.column_stack(
-            [self._scaled(name, 0.2 * half, half) for name, half in widths.items()]
-            + [
-                self.change(replace(self.truth, imperfection=mode))
-                for mode in map_modes(0.5 * FLOW_MAP, rig.axes)
-            ]
+        numbers = [self._scaled(name, 0.2 * half, half) for name, half in widths.items()]
+        known = {at: 0.5 * half for at, half in FLOW_MAP.items()}
+        self.declared, self.alike = (
+            np.column_stack(
+                [*numbers, *(self.change(replace(self.truth, imperfection=m)) for m in modes)]
+            )
+            for modes in (map_modes(known, rig.axes), map_modes(known, rig.axes, alike=True))
         )
         self.drawn = np.column_stack(
             [self.change(self._drawn(seed)) for seed in range(MACHINES)]
@@ -156,12 +158,12 @@ class Limits:
         """sqrt(information) of a change, and its RMS over what it has to exceed, in the signal where that is most."""
         scale = np.sqrt(self.every)  # a stretch stands for so many
         own = [k for k, name in enumerate(self.names) if name in effect.names]
-        declared, drawn = scale * np.delete(self.declared, own, axis=1), scale * self.drawn
-        change = scale * change
+        declared, alike = (scale * np.delete(d, own, axis=1) for d in (self.declared, self.alike))
+        change, drawn = scale * change, scale * self.drawn
         share, rest = undone(change, np.hstack([declared, drawn]))
         information = float(rest @ rest + share @ share)
         beside = np.column_stack([change, drawn])
-        left = undone(beside, declared)[1] / scale
+        left = undone(beside, alike)[1] / scale
         by_signal = left.reshape(len(self.stretches), len(self.rig.signals), -1, beside.shape[1])
         squares = np.mean(by_signal**2, axis=(0, 2))  # (signals, columns)
         noise = [self.weights[s] * channel_of(s).deviation for s in self.rig.signals]

@@ -305,9 +305,13 @@ def weights_of(hypothesis: Hypothesis, names: list[str]) -> Array:
 
 def cost_of_departure(fitted: Fitted) -> float:
     """How far the values are from what is declared, as chi-square."""
-    h = fitted.hypothesis
+    return departure(fitted.hypothesis, fitted.params)
+
+
+def departure(h: Hypothesis, params: _core.Params) -> float:
+    """The same of other values than the fitted ones."""
     names = list(h.free)
-    off = np.array([fitted.params[n] - h.start[n] for n in names])
+    off = np.array([params[n] - h.start[n] for n in names])
     return float(np.sum((weights_of(h, names) @ off) ** 2))
 
 

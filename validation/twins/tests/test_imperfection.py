@@ -11,11 +11,13 @@ import pytest
 from sms.diagnosis.pipeline import read_and_check
 from sms.estimation.run import make_run
 from sms.io.rig import load_rig
+from sms.parameters import PARAMETERS
 
 from validation import random_cases
 from validation.twins import imperfection
 from validation.twins.air import GRID_POINTS, GRID_STEP, Array, edges, valve_map
 from validation.twins.clock import holding
+from validation.twins.declared import FLOW_MAP
 from validation.twins.draw import RIGS, draw, draw_trial, open_truth, seeds_of
 from validation.twins.imperfection import (
     OPENING,
@@ -225,3 +227,15 @@ def test_the_folder_does_not_know_how_the_machine_is_off(tmp_path: Path) -> None
 def test_a_level_beyond_reason_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="imperfection is 40"):
         draw("tank", 1, tmp_path / "r", tmp_path / "t.json", "none", imperfection=40.0)
+
+
+def test_a_trial_takes_the_valve_s_map_to_be_known_as_the_core_does() -> None:
+    """It took it to be known to 3 % at every opening, and hid what 15 % near the first one imitate."""
+    knots = [PARAMETERS[f"flow_map_feed_lower_{n}"] for n in range(1, len(FLOW_MAP) + 1)]
+    at = [float(k.doc.rpartition("opening of ")[2].split()[0]) for k in knots]
+    assert dict(zip(at, (k.uncertainty for k in knots), strict=True)) == FLOW_MAP
+    opening = np.array([0.3, -0.675, 1.1, 5.0])
+    modes = imperfection.map_modes(FLOW_MAP, 1)
+    assert len(modes) == 4 * len(FLOW_MAP)
+    together = sum(np.asarray(m.axes[0].charge(opening)) for m in modes)
+    np.testing.assert_allclose(together, [0.15, 0.11, 0.04, 0.03])

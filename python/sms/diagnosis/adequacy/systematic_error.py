@@ -16,10 +16,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sms import _core
 from sms.arrays import Array, Index
 from sms.diagnosis.hypothesis import (
     Data,
     Fitted,
+    departure,
     fit,
     fit_with_discrepancy,
     nuisance_of,
@@ -61,12 +63,36 @@ def generalised(fitted: Fitted, data: Data) -> Fitted:
     """
     h, runs = fitted.hypothesis, data.identify
     start, allowed = fitted.params, data.allowed(runs)
-    if allowed is None:
-        of_causes = {n for cause in h.causes for n in cause.parameters}
-        known = [n for n in h.known if n not in of_causes]
-        start = changed(start, known, np.array([h.start[n] for n in known]))
-        allowed = runs.discrepancy(start, residual_of(runs, start))
-    return with_systematic_error(fit(h, runs, start, discrepancy=allowed, may_set_aside=True), runs)
+    if allowed is not None:
+        found = fit(h, runs, start, discrepancy=allowed, may_set_aside=True)
+        return with_systematic_error(found, runs)
+    of_causes = {n for cause in h.causes for n in cause.parameters}
+    known = [n for n in h.known if n not in of_causes]
+    start = changed(start, known, np.array([h.start[n] for n in known]))
+    allowed = runs.discrepancy(start, residual_of(runs, start))
+    return with_systematic_error(_from_either(fitted, start, allowed, runs), runs)
+
+
+def _from_either(
+    fitted: Fitted, start: _core.Params, discrepancy: Discrepancy, runs: Runs
+) -> Fitted:
+    """Generalised least squares from `start`; and from the fitted model's values where that has ended in no minimum:
+    where these, as they are, leave less. The better of the two.
+    """
+
+    def left(params: _core.Params, residual: Array) -> float:
+        white = discrepancy.whitener.whiten(residual)
+        return float(white @ white) + departure(fitted.hypothesis, params)
+
+    def fit_from(params: _core.Params) -> Fitted:
+        return fit(fitted.hypothesis, runs, params, discrepancy=discrepancy, may_set_aside=True)
+
+    found = fit_from(start)
+    reached = left(found.params, found.fit.residual)
+    if left(fitted.params, fitted.fit.residual) >= reached:
+        return found
+    other = fit_from(fitted.params)
+    return other if left(other.params, other.fit.residual) < reached else found
 
 
 def sized(fitted: Fitted, data: Data) -> Fitted:
