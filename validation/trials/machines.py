@@ -162,8 +162,7 @@ def _estimates(case: Case, hidden: Sequence[dict[str, Any]]) -> list[tuple[float
     found = {}
     for members in case.outcome.groups:
         for m in members:
-            at = case.outcome.final if m is members[0] else m.fitted
-            found[key_of(m.effect)] = found_value(at, m.effect, case.data)
+            found[key_of(m.effect)] = found_value(case.of_member(m, members), m.effect, case.data)
     estimates = []
     for e in hidden:
         value = found.get(e["key"])

@@ -93,6 +93,10 @@ class Case:
         """The model that the answer stands for: the baseline where nothing is named."""
         return self.outcome.final if self.outcome.named else self.baseline
 
+    def of_member(self, trial: Trial, members: Sequence[Trial]) -> Fitted:
+        """The model from which the size of a member of a class is stated: its first one stands in the final model."""
+        return self.outcome.final if trial is members[0] else sized(trial.fitted, self.data)
+
     def where(self, rng: np.random.Generator) -> Hidden:
         """Which equation the baseline's error comes from, by hidden inputs in the simulation."""
         return _hidden(self.baseline, self.data, self.before, rng)
@@ -280,7 +284,7 @@ def _cause(members: list[Trial], case: Case) -> Cause:
     data, final = case.data, case.outcome.final
 
     def found(m: Trial) -> tuple[ParameterValue, ...]:
-        at = final if m is members[0] else sized(m.fitted, data)
+        at = case.of_member(m, members)
         others = m.effect.parameters[1:]
         beside = (value_of(at, n, data.rig.declared(n).value) for n in others)
         return (found_value(at, m.effect, data), *beside)
