@@ -91,7 +91,7 @@ def test_a_stream_that_ends_before_the_machine_is_learned_is_said(
 
 # ---- a bench of another simulator ------------------------------------------------------------------
 
-LEARN, WELL, ILL = 200.0, 60.0, 90.0
+LEARN, WELL, ILL = 200.0, 60.0, 70.0
 LEAK = 7e-10
 """kg/(s Pa), of the lower chamber: three times the detection limit of the blind trials."""
 

@@ -76,11 +76,9 @@ def test_a_record_of_another_machine_is_said_to_contradict_the_rest(
     assert bad.records(folder)[record].stem in errors(found)
 
 
-@pytest.mark.parametrize(
-    ("kind", "signal"),
-    [("tank", "tank_pressure"), pytest.param("bench", "extension", marks=pytest.mark.full)],
-)
-def test_two_loggers_with_different_clocks(tmp_path: Path, kind: str, signal: str) -> None:
+@pytest.mark.full
+@pytest.mark.parametrize(("kind", "signal"), [("tank", "tank_pressure"), ("bench", "extension")])
+def test_a_late_clock_is_a_cause(tmp_path: Path, kind: str, signal: str) -> None:
     folder = bad.healthy(kind, SEED, tmp_path / "same")
     bad.late_clock(folder, signal, [0.12] * 4)
     found = answer(folder)
@@ -89,6 +87,14 @@ def test_two_loggers_with_different_clocks(tmp_path: Path, kind: str, signal: st
     assert named & {"clock_skew", "command_delay"}
     assert found.causes[0].parameters[0].value == pytest.approx(0.12, abs=0.01)
 
+
+@pytest.mark.parametrize(
+    ("kind", "signal"),
+    [("tank", "tank_pressure"), pytest.param("bench", "extension", marks=pytest.mark.full)],
+)
+def test_a_clock_that_is_late_otherwise_in_each_record_is_a_fault_of_the_records(
+    tmp_path: Path, kind: str, signal: str
+) -> None:
     folder = bad.healthy(kind, SEED, tmp_path / "each")
     bad.late_clock(folder, signal, [0.12, -0.06, 0.03, -0.10])
     found = answer(folder)
