@@ -14,9 +14,10 @@ and N a column for each of these in units of its standard deviation, the size co
 where sqrt(i) = SIGMAS (five standard deviations of the best estimate), and where the change that
 what is declared leaves is in at least one signal as large as FLOOR of the noise, and as what the
 drawn machines leave there: below that a cause drowns in the differences between two descriptions
-of one machine. For the information each edge of a valve is off by itself; for these differences
-both ports are alike, so that they are not counted as known. Coloured noise counts as white noise
-of the same density at low frequency, which is on the safe side.
+of one machine. For the information each edge of a valve is off by itself. For these differences
+both ports are off alike: free edges would take most of what the drawn machines differ by, and of the floor.
+Coloured noise counts as white noise of the same density at low frequency, which is on the safe
+side.
 
     python -m validation.twins limits bench
 
