@@ -145,24 +145,21 @@ def with_systematic_error(fitted: Fitted, runs: Runs) -> Fitted:
     free = list(fitted.hypothesis.free)
     place = [free.index(n) for n in fitted.movable]
     least = np.zeros(len(free))
-    variance = (np.diag(systematic.covariance) + systematic.move**2) / scale**2
-    least[place] = np.sqrt(variance + _of_unknown_zeros(fitted, nuisance, runs))
+    variance = np.diag(systematic.covariance) + systematic.move**2
+    zeros = nuisance.with_declared(_unknown_zeros(fitted, runs))
+    moved = np.linalg.lstsq(stacked / scale, zeros, rcond=1e-12)[0]
+    least[place] = np.sqrt(variance + np.sum(moved**2, axis=1)) / scale
     return _less_sure(fitted, least)
 
 
-def _of_unknown_zeros(fitted: Fitted, nuisance: Nuisance, runs: Runs) -> Array:
-    """(movable,): the square of how far each estimate is off where converters round down whose rounding is not
-    declared: the zeros of these sensors are no parameters of the fit, and known to half a step.
-    """
+def _unknown_zeros(fitted: Fitted, runs: Runs) -> Array:
+    """(rows, zeros): by how much half a step changes the residual, white, of each sensor whose converter may round
+    down, and whose zero is no parameter of the fit."""
     half = {n: h for n, h in runs.rig.unknown_zeros.items() if n not in fitted.hypothesis.free}
     if not half:
-        return np.zeros(len(fitted.movable))
+        return np.zeros((len(fitted.fit.residual), 0))
     _, raw = runs.problem.evaluate(fitted.params, list(half))
-    zeros = nuisance.with_declared(fitted.whiten(raw.astype(np.float64)))
-    stacked = np.vstack([nuisance.jacobian, nuisance.pull])
-    scale = np.maximum(np.linalg.norm(stacked, axis=0), 1e-300)
-    moves = np.linalg.lstsq(stacked / scale, zeros * np.array(list(half.values())), rcond=1e-12)[0]
-    return np.asarray(np.sum((moves / scale[:, None]) ** 2, axis=1))
+    return fitted.whiten(raw.astype(np.float64) * np.array(list(half.values())))
 
 
 @dataclass(frozen=True)
