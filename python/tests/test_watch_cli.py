@@ -134,7 +134,8 @@ def test_a_bench_that_begins_to_leak_is_alarmed_and_not_before(day: Path, tmp_pa
     assert abs(alarm["since_s"] - onset) <= 10.0
     best = alarm["guesses"][0]
     assert best["effect"] == "fitting_leakage of lower"
-    assert best["size"] == pytest.approx(LEAK, rel=0.2)
+    assert best["interval"][0] > 0.0
+    assert best["size"] == pytest.approx(LEAK, rel=0.35)  # to first order, of four segments
     assert "external leakage of the lower chamber" in result.output
     assert (out / "rows" / "rows_000001.csv.gz").is_file()
     for _ in range(100):

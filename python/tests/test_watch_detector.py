@@ -10,7 +10,7 @@ from scipy.stats import binom, chi2
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import catalogue
 from sms.watch import healthy
-from sms.watch.alarm import Judge, guesses_of, sizes
+from sms.watch.alarm import Judge, best_lag, guesses_of, sizes
 from sms.watch.detector import DAY, FEWEST, LAGS, Detector, thresholds
 from sms.watch.healthy import BLOCKS, Baseline, Sums, scatter
 from sms.watch.segments import SEGMENT
@@ -61,7 +61,7 @@ def test_the_score_of_a_known_shift_recovers_its_size() -> None:
     rng, b = draw("size of a shift"), baseline()
     size = np.array([30.0, -12.0, 8.0, 0.0]) * np.array([*UNITS, 1.0])
     segments = [drawn(b, rng, k, size) for k in range(40)]
-    found, error = sizes(b, segments)
+    found, error, _ = sizes(b, segments)
     assert np.all(np.abs(found - size) < 5.0 * error)
     total = sum(s.response for s in segments)
     grown = error / np.sqrt(
@@ -133,6 +133,26 @@ def test_a_change_is_alarmed_with_its_onset_and_named(well: int) -> None:
         assert abs(alarm.guesses[0].size - size[0]) < 5.0 * UNITS[0]
         assert alarm.guesses[0].low < alarm.guesses[0].size < alarm.guesses[0].high
     assert np.median(off) <= 2 * SEGMENT
+
+
+def test_two_segments_that_happen_to_agree_are_no_evidence() -> None:
+    """The chi-square of a stretch that short is as large as chance makes it, since its scatter is known with one
+    degree of freedom: it must not outweigh an effect whose size is nearly the same in six."""
+    b, detector = baseline(), Detector(baseline(), 0.5)
+    rng = draw("two that agree")
+    like_a_cause = 30.0 + np.array([4.0, -4.0, 3.0, -4.0, 4.0, -3.0])
+    by_chance = np.array([5.0, 60.0, -40.0, 10.0, 25.0, 25.0 + rng.uniform(0.3, 0.6)])
+    for k in range(6):
+        response = np.array([*(100.0 / UNITS**2 * np.array([4.0, 1.0, 9.0])), 1.0])
+        size = np.array([like_a_cause[k], by_chance[k], 0.0, 0.0]) * np.array([*UNITS, 1.0])
+        shift = (b.mean + size) * response
+        look = detector.push(Sums(SEGMENT * k, SEGMENT * (k + 1), shift, response, response))
+    (chance, *_) = guesses_of(b, detector.last(2))
+    (cause, *_) = guesses_of(b, detector.last(6))
+    assert (chance.effect, cause.effect) == (NAMES[1], NAMES[0])
+    assert chance.chi_square > cause.chi_square
+    assert chance.likelihood_ratio < cause.likelihood_ratio
+    assert best_lag(detector, look) == 6
 
 
 def test_an_alarm_ends_after_a_repair_and_the_next_has_another_number() -> None:

@@ -46,6 +46,15 @@ class Guess:
     """Its interval of 95 %, to first order."""
     chi_square: float
     """What it takes of the likelihood ratio, its size within what is plausible."""
+    freedom: float
+    """With which the scatter is known that this is in units of: that of the healthy machine, or, where the segments
+    scatter more, of these alone."""
+
+    @property
+    def likelihood_ratio(self) -> float:
+        """The same where the scatter is not known beforehand, twice the logarithm. Two segments that happen to ask for
+        nearly one size have hardly any scatter, and a chi-square as large as one likes."""
+        return (self.freedom + 1.0) * float(np.log1p(self.chi_square / self.freedom))
 
     def __str__(self) -> str:
         """ "fitting leakage, lower chamber: +0.52 (0.41 to 0.63) g/(s MPa)"."""
@@ -186,7 +195,7 @@ def best_lag(detector: Detector, look: Look) -> int:
     found = [(0.0, look.lag)]
     for lag in (n for n in LAGS if LEAST <= n <= len(detector.sums)):
         guesses = guesses_of(detector.baseline, detector.last(lag))
-        found.append((guesses[0].chi_square if guesses else 0.0, lag))
+        found.append((max((g.likelihood_ratio for g in guesses), default=0.0), lag))
     return max(found)[1]
 
 
@@ -205,8 +214,9 @@ def onset(detector: Detector, look: Look, guesses: Sequence[Guess]) -> float:
     return detector.last(lag)[0].begin
 
 
-def sizes(baseline: Baseline, segments: Sequence[Sums]) -> tuple[Array, Array]:
-    """(t,) each: by how much each test's size is off from the healthy one, and its standard error.
+def sizes(baseline: Baseline, segments: Sequence[Sums]) -> tuple[Array, Array, Array]:
+    """(t,) each: by how much each test's size is off from the healthy one, its standard error, and the freedom with
+    which that is known.
 
     What an effect leaves of the segments counts in its error where it is more than healthy segments scatter: one that
     does not fit has another size in each.
@@ -220,14 +230,16 @@ def sizes(baseline: Baseline, segments: Sequence[Sums]) -> tuple[Array, Array]:
     error = baseline.error(total, variance.sum(axis=0))
     left = shift - (size + baseline.mean) * response
     healthy = np.maximum(baseline.inflation * variance.sum(axis=0), 1e-300)
-    scatter = np.sum(left**2, axis=0) / healthy * len(segments) / max(len(segments) - 1, 1)
+    own = max(len(segments) - 1, 1)
+    scatter = np.sum(left**2, axis=0) / healthy * len(segments) / own
     error = error * np.sqrt(np.maximum(scatter, 1.0))
-    return np.where(told, size, 0.0), np.where(told, error, np.inf)
+    freedom = np.where(scatter > 1.0, np.minimum(own, baseline.freedom), baseline.freedom)
+    return np.where(told, size, 0.0), np.where(told, error, np.inf), freedom
 
 
 def places_of(baseline: Baseline, segments: Sequence[Sums]) -> tuple[tuple[str, str, float], ...]:
     """Energies that have grown by more than three standard errors."""
-    size, error = sizes(baseline, segments)
+    size, error, _ = sizes(baseline, segments)
     found = [
         (t.name, t.of, float(size[k] / error[k]))
         for k, t in enumerate(baseline.tests)
@@ -240,7 +252,7 @@ def guesses_of(baseline: Baseline, segments: Sequence[Sums]) -> tuple[Guess, ...
     """The effects that fit these segments; none of fewer than LEAST."""
     if len(segments) < LEAST:
         return ()
-    size, error = sizes(baseline, segments)
+    size, error, freedom = sizes(baseline, segments)
     found = []
     for k, test in enumerate(baseline.tests):
         if test.effect is None or not np.isfinite(error[k]):
@@ -249,7 +261,7 @@ def guesses_of(baseline: Baseline, segments: Sequence[Sums]) -> tuple[Guess, ...
         gain = step * (2.0 * float(size[k]) - step) / float(error[k]) ** 2
         if gain < SEEN**2:
             continue
-        half = float(student.ppf(0.975, baseline.freedom[k]) * error[k])
+        half = float(student.ppf(0.975, freedom[k]) * error[k])
         found.append(
             Guess(
                 test.name,
@@ -260,6 +272,7 @@ def guesses_of(baseline: Baseline, segments: Sequence[Sums]) -> tuple[Guess, ...
                 float(size[k]) - half,
                 float(size[k]) + half,
                 gain,
+                float(freedom[k]),
             )
         )
     found.sort(key=lambda g: -g.chi_square)
