@@ -350,18 +350,23 @@ def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_m
 
 
 @pytest.mark.parametrize(
-    ("off", "alike", "expected"),
+    ("off", "alike", "sizes", "expected"),
     [
-        ((1.5, 0.0), 0.0, 2.25),
-        ((2.0, 1.0), 0.0, 5.0),
-        ((1.5, -1.5), 0.99, 450.0),  # each may be nothing, both together not
-        ((1.5, 1.5), 0.99, 2.25 * 2.0 / 1.99),
+        ((1.5, 0.0), 0.0, None, 2.25),
+        ((2.0, 1.0), 0.0, None, 5.0),
+        ((1.5, -1.5), 0.99, None, 450.0),  # each may be nothing, both together not
+        ((1.5, 1.5), 0.99, None, 2.25 * 2.0 / 1.99),
+        ((2.0, 9.0), 0.0, 1, 4.0),
+        ((0.6, -1.9), -0.907, 1, 0.36 / (1.0 - 0.907**2)),  # a presliding that was named, as nothing is
+        ((1.5, -1.5), 0.99, 1, 2.25 / (1.0 - 0.99**2)),
     ],
 )
 def test_how_far_an_effect_is_from_what_is_declared(
-    off: tuple[float, float], alike: float, expected: float
+    off: tuple[float, float], alike: float, sizes: int | None, expected: float
 ) -> None:
-    """A tube's length and diameter are known as one combination; a conductance of 1.57 +- 0.21 beside it was 1.50."""
+    """A tube's length and diameter are known as one combination; a conductance of 1.57 +- 0.21 beside it was 1.50. Of
+    an effect with one size the other parameter shapes what that switches on.
+    """
     error = np.array([2.0, 3e-3])
     covariance = np.outer(error, error) * np.array([[1.0, alike], [alike, 1.0]])
     final = SimpleNamespace(
@@ -371,7 +376,7 @@ def test_how_far_an_effect_is_from_what_is_declared(
         hypothesis=SimpleNamespace(free={"length": None, "diameter": None}),
         covariance=covariance,
     )
-    tube = cast(Any, SimpleNamespace(parameters=("length", "diameter")))
+    tube = cast(Any, SimpleNamespace(parameters=("length", "diameter"), sizes=sizes))
     declared = cast(Any, {"length": 1.0, "diameter": 0.009})
     distance, count = backward_elimination._distance_from_nothing(tube, cast(Any, final), declared)
     assert distance == pytest.approx(expected)

@@ -68,6 +68,9 @@ class Effect:
     """Signals of which one has to be measured; none: it shows in what every such rig measures."""
     step: float | None = None
     """The size at which its sensitivity is taken, where it has no slope at its neutral value."""
+    sizes: int | None = None
+    """How many of its parameters, the first, are sizes, of which none has an effect at its neutral value; the others
+    shape what these switch on, and without them have no value. None: all are sizes."""
     absolute: bool = False
     """Of a shifted parameter: `plausible` is a shift in its unit, not relative."""
     chambers: str | None = None
@@ -123,6 +126,7 @@ def _effects(entry: dict[str, Any]) -> Iterable[Effect]:
             of_sensor=of_sensor,
             seen_in=tuple(entry.get("seen_in", ())),
             step=entry.get("step"),
+            sizes=entry.get("sizes"),
             absolute=entry.get("absolute", False),
             chambers=entry.get("chambers"),
             controller=entry.get("controller"),

@@ -112,14 +112,18 @@ def _may_be_nothing(
 def _distance_from_nothing(
     effect: Effect, final: Fitted, declared: _core.Params
 ) -> tuple[float, int]:
-    """How far the effect's parameters lie from what is declared, squared and in standard errors, systematic errors
-    counted; and how many they are. Infinite where nothing was to be estimated.
+    """How far the effect's sizes lie from what is declared, squared and in standard errors, systematic errors counted;
+    and how many parameters were estimated. Infinite where none was.
+
+    Without the effect what shapes it has no value, so none that is declared (Davies, Biometrika 64, 1977): it stays
+    where it fits best.
     """
     names = [n for n in effect.parameters if n in final.movable and final.standard_error(n) > 0.0]
     if not names:
         return np.inf, 0
     place = [list(final.hypothesis.free).index(n) for n in names]
-    off = np.array([final.params[n] - declared[n] for n in names])
+    sizes = effect.parameters[: effect.sizes]
+    off = np.array([final.params[n] - declared[n] if n in sizes else 0.0 for n in names])
     deviation = np.array([final.standard_error(n) for n in names])
     correlation = final.covariance[np.ix_(place, place)] / np.outer(deviation, deviation)
     distance = off / deviation @ np.linalg.pinv(correlation, hermitian=True) @ (off / deviation)
