@@ -357,7 +357,12 @@ def test_a_single_cause_within_its_error_is_none_unless_it_takes_nearly_all_of_m
         ((1.5, -1.5), 0.99, None, 450.0),  # each may be nothing, both together not
         ((1.5, 1.5), 0.99, None, 2.25 * 2.0 / 1.99),
         ((2.0, 9.0), 0.0, 1, 4.0),
-        ((0.6, -1.9), -0.907, 1, 0.36 / (1.0 - 0.907**2)),  # a presliding that was named, as nothing is
+        (
+            (0.6, -1.9),
+            -0.907,
+            1,
+            0.36 / (1.0 - 0.907**2),
+        ),  # a presliding that was named, as nothing is
         ((1.5, -1.5), 0.99, 1, 2.25 / (1.0 - 0.99**2)),
     ],
 )

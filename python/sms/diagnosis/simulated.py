@@ -53,6 +53,7 @@ from sms.diagnosis.result import Cause, Diagnosis, NotTestable, ParameterValue, 
 from sms.diagnosis.selection.backward_elimination import without_insignificant, without_untenable
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.identifiability import identifiable
+from sms.diagnosis.selection.next_best import next_best
 from sms.diagnosis.selection.outcome import Outcome
 from sms.diagnosis.selection.stepwise import stepwise_selection
 from sms.diagnosis.thresholds import EXPLAINS
@@ -146,8 +147,24 @@ def investigate(
 def _with_sizes(
     outcome: Outcome, baseline: Fitted, data: Data, least: Array
 ) -> tuple[Fitted, Outcome]:
-    """The final model by generalised least squares, and the causes whose sizes in it are beyond what is declared: by
-    either estimate of what no parameter explains.
+    """The final model by generalised least squares, and the causes that stand in it. Of a single cause that does not,
+    the next best takes the place.
+    """
+    final, standing = _standing(outcome, baseline, data, least)
+    while len(outcome.found) == 1 and not standing.found:
+        other = next_best(standing, baseline, data)
+        if other is None:
+            break
+        outcome = other
+        final, standing = _standing(outcome, baseline, data, least)
+    return final, standing
+
+
+def _standing(
+    outcome: Outcome, baseline: Fitted, data: Data, least: Array
+) -> tuple[Fitted, Outcome]:
+    """The final model, and the causes whose sizes in it are beyond what is declared: by either estimate of what no
+    parameter explains.
     """
     final = generalised(outcome.final, data) if outcome.found else outcome.final
     while (
