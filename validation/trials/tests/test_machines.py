@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 from sms.diagnosis import diagnose
+from sms.diagnosis.effects.catalogue import catalogue
+from sms.parameters import PARAMETERS, common_parameter
 
 from validation.random_cases import SEED
-from validation.trials.answers import answered
+from validation.trials.answers import answered, key_of
 from validation.trials.detection_limits import limits_in_trials
 from validation.trials.machines import (
     Outcome,
@@ -24,7 +26,8 @@ from validation.trials.machines import (
     run_tasks,
     tasks,
 )
-from validation.twins.draw import draw
+from validation.twins import limits
+from validation.twins.draw import draw, drawable
 
 FRESH = 20
 
@@ -54,6 +57,25 @@ def test_goals_and_the_confusion_matrix_are_counts() -> None:
     alarms = next(g for g in goals(outcomes) if "healthy" in g.what)
     assert (alarms.count, alarms.of, alarms.share) == (1, 2, 0.5)
     assert confusion(outcomes)["nothing"] == {"no-evidence": 1, "unknown": 1}
+
+
+@pytest.mark.parametrize("kind", ["bench", "platform", "tank"])
+def test_what_is_hidden_has_a_size_that_the_diagnosis_holds_plausible(kind: str) -> None:
+    """Rod ends that resisted with 2,200 N m s/rad, twice what any would, could only be called something else."""
+    known = {key_of(e): e for e in catalogue(kind)}
+    asked = 0
+    for effect in {e for pair in limits.read(kind) for e in drawable(kind, pair)}:
+        if effect.key not in known or effect.drawn_from is not None:
+            continue
+        hypothesis = known[effect.key]
+        declared = PARAMETERS[common_parameter(hypothesis.parameters[0])].default
+        low, high = hypothesis.plausible_change(declared)
+        asked += 1
+        if effect.signed or not effect.falls:
+            assert effect.largest <= high * (1.0 + 1e-9), effect.key
+        if effect.signed or effect.falls:
+            assert effect.largest <= -low * (1.0 + 1e-9), effect.key
+    assert asked > 3
 
 
 def test_a_pair_that_cannot_be_simulated_is_said_and_not_drawn(tmp_path: Path) -> None:
