@@ -1,4 +1,4 @@
-// Many poses at once: four side by side where the processor can, one after the other else; the same bits either way.
+// Many poses at once: eight or four side by side where the processor can, one after the other else; the same bits anyway.
 #include <cstddef>
 
 #include "sms/inverse_kinematics.hpp"
@@ -33,8 +33,9 @@ struct Inverse {
     return sms_inverse_kinematics(rows.geometry, rows.given + 3 * i, rows.start_of(i), rows.pose + i,
                                   rows.extension + 3 * i, rows.convergence_of(i));
   }
-  static sms_status four(const sms::Geometry<Lanes>& g, const sms::Vec3<Lanes>& q, const sms::Pose<Lanes>& start,
-                         sms::Pose<Lanes>& pose, sms::Vec3<Lanes>& extension, sms::Convergence<Lanes>* convergence) {
+  template <typename L>
+  static sms_status side_by_side(const sms::Geometry<L>& g, const sms::Vec3<L>& q, const sms::Pose<L>& start,
+                                 sms::Pose<L>& pose, sms::Vec3<L>& extension, sms::Convergence<L>* convergence) {
     return sms::inverse_kinematics(g, q, start, pose, extension, convergence);
   }
 };
@@ -44,42 +45,47 @@ struct Forward {
     return sms_forward_kinematics(rows.geometry, rows.given + 3 * i, rows.start_of(i), rows.pose + i,
                                   rows.convergence_of(i));
   }
-  static sms_status four(const sms::Geometry<Lanes>& g, const sms::Vec3<Lanes>& extension,
-                         const sms::Pose<Lanes>& start, sms::Pose<Lanes>& pose, sms::Vec3<Lanes>& /*given*/,
-                         sms::Convergence<Lanes>* convergence) {
+  template <typename L>
+  static sms_status side_by_side(const sms::Geometry<L>& g, const sms::Vec3<L>& extension, const sms::Pose<L>& start,
+                                 sms::Pose<L>& pose, sms::Vec3<L>& /*given*/, sms::Convergence<L>* convergence) {
     return sms::forward_kinematics(g, extension, start, pose, convergence);
   }
 };
 
 #if defined(__GNUC__) && defined(__x86_64__)
-bool takes_four() { return __builtin_cpu_supports("avx2") != 0; }
-
-// Column k of four rows of so many numbers.
-inline Lanes column(const double* rows, int width, int k) {
-  return Lanes(Lanes::Numbers{rows[k], rows[width + k], rows[2 * width + k], rows[3 * width + k]});
+// Column k of some rows of so many numbers.
+template <int N>
+inline Lanes<N> column(const double* rows, int width, int k) {
+  Lanes<N> numbers;
+  for (int l = 0; l < N; ++l) {
+    numbers.at[l] = rows[l * width + k];
+  }
+  return numbers;
 }
 
-inline sms::Pose<Lanes> side_by_side(const sms_pose* poses) {
+template <int N>
+inline sms::Pose<Lanes<N>> poses_from(const sms_pose* poses) {
   const double* const p = &poses->roll;
-  return {column(p, 6, 0), column(p, 6, 1), column(p, 6, 2), column(p, 6, 3), column(p, 6, 4), column(p, 6, 5)};
+  return {column<N>(p, 6, 0), column<N>(p, 6, 1), column<N>(p, 6, 2),
+          column<N>(p, 6, 3), column<N>(p, 6, 4), column<N>(p, 6, 5)};
 }
 
-// Row i and the three after it; false where one of them has no solution, and nothing is written then.
-template <typename Direction>
-inline bool solve_four(const sms::Geometry<Lanes>& geometry, const sms::Pose<Lanes>& rest, const Rows& rows,
-                       std::size_t i) {
+// Row i and those after it that are taken with it; false where one of them has no solution, and nothing is written then.
+template <typename Direction, int N>
+inline bool solve_at(const sms::Geometry<Lanes<N>>& geometry, const sms::Pose<Lanes<N>>& rest, const Rows& rows,
+                     std::size_t i) {
   const double* const given = rows.given + 3 * i;
   const bool ask = rows.convergence != nullptr;
-  sms::Pose<Lanes> pose;
-  sms::Vec3<Lanes> extension = sms::Vec3<Lanes>::Zero();
-  sms::Convergence<Lanes> convergence;
-  const sms_status status = Direction::four(
-      geometry, sms::Vec3<Lanes>(column(given, 3, 0), column(given, 3, 1), column(given, 3, 2)),
-      rows.start != nullptr ? side_by_side(rows.start + i) : rest, pose, extension, ask ? &convergence : nullptr);
+  sms::Pose<Lanes<N>> pose;
+  sms::Vec3<Lanes<N>> extension = sms::Vec3<Lanes<N>>::Zero();
+  sms::Convergence<Lanes<N>> convergence;
+  const sms_status status = Direction::side_by_side(
+      geometry, sms::Vec3<Lanes<N>>(column<N>(given, 3, 0), column<N>(given, 3, 1), column<N>(given, 3, 2)),
+      rows.start != nullptr ? poses_from<N>(rows.start + i) : rest, pose, extension, ask ? &convergence : nullptr);
   if (status != SMS_OK) {
     return false;
   }
-  for (int l = 0; l < Lanes::count; ++l) {
+  for (int l = 0; l < N; ++l) {
     const std::size_t row = i + std::size_t(l);
     rows.status[row] = SMS_OK;
     rows.pose[row] = {pose.roll.at[l], pose.pitch.at[l], pose.height.at[l], pose.yaw.at[l], pose.x.at[l], pose.y.at[l]};
@@ -93,33 +99,54 @@ inline bool solve_four(const sms::Geometry<Lanes>& geometry, const sms::Pose<Lan
   return true;
 }
 
-// As many fours as there are; gives the first row that is left. Everything is compiled into this function, for AVX2,
-// and nothing else of the library is.
-template <typename Direction>
-__attribute__((target("avx2"), flatten)) std::size_t solve_fours(const Rows& rows) {
-  const sms::Geometry<Lanes> geometry = sms::in_lanes(*reinterpret_cast<const sms::Geometry<double>*>(rows.geometry));
-  const sms::Pose<Lanes> rest = sms::rest_pose(geometry);
-  std::size_t i = 0;
-  for (; i + Lanes::count <= rows.n; i += Lanes::count) {
-    if (!solve_four<Direction>(geometry, rest, rows, i)) {
-      for (std::size_t k = i; k < i + Lanes::count; ++k) {
+// Rows from `first` on, as many at a time as there are lanes; gives the first row that is left.
+template <typename Direction, int N>
+inline std::size_t solve_wide(const Rows& rows, std::size_t first) {
+  const auto geometry = sms::in_lanes<N>(*reinterpret_cast<const sms::Geometry<double>*>(rows.geometry));
+  const sms::Pose<Lanes<N>> rest = sms::rest_pose(geometry);
+  std::size_t i = first;
+  for (; i + N <= rows.n; i += N) {
+    if (!solve_at<Direction, N>(geometry, rest, rows, i)) {
+      for (std::size_t k = i; k < i + N; ++k) {
         rows.status[k] = Direction::one(rows, k);
       }
     }
   }
   return i;
 }
-#else
-bool takes_four() { return false; }
+
+// Everything is compiled into these two functions, for AVX2 and for AVX-512, and nothing else of the library is.
 template <typename Direction>
-std::size_t solve_fours(const Rows& /*rows*/) {
+__attribute__((target("avx2"), flatten)) std::size_t solve_fours(const Rows& rows, std::size_t first) {
+  return solve_wide<Direction, 4>(rows, first);
+}
+template <typename Direction>
+__attribute__((target("avx512f,avx512dq,avx512vl"), flatten)) std::size_t solve_eights(const Rows& rows) {
+  return solve_wide<Direction, 8>(rows, 0);
+}
+
+bool takes_four() { return __builtin_cpu_supports("avx2") != 0; }
+bool takes_eight() {
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+         __builtin_cpu_supports("avx512vl") != 0;
+}
+
+// As many as the processor takes side by side; gives the first row that is left.
+template <typename Direction>
+std::size_t solve_side_by_side(const Rows& rows) {
+  const std::size_t after_eights = takes_eight() ? solve_eights<Direction>(rows) : 0;
+  return takes_four() ? solve_fours<Direction>(rows, after_eights) : after_eights;
+}
+#else
+template <typename Direction>
+std::size_t solve_side_by_side(const Rows& /*rows*/) {
   return 0;
 }
 #endif
 
 template <typename Direction>
 sms_status solve(const Rows& rows) {
-  for (std::size_t i = takes_four() ? solve_fours<Direction>(rows) : 0; i < rows.n; ++i) {
+  for (std::size_t i = solve_side_by_side<Direction>(rows); i < rows.n; ++i) {
     rows.status[i] = Direction::one(rows, i);
   }
   for (std::size_t i = 0; i < rows.n; ++i) {

@@ -84,7 +84,9 @@ TEST_CASE("many poses at once have the bits of single ones, with rows among them
   Random random;
   const sms_geometry geometry = machine();
   const std::size_t many = std::size_t(sms_test::count);
-  for (const std::size_t n : {std::size_t(0), std::size_t(1), std::size_t(3), std::size_t(4), std::size_t(6), many}) {
+  // One by one, a four, an eight, and each beside others.
+  for (const std::size_t n : {std::size_t(0), std::size_t(1), std::size_t(3), std::size_t(4), std::size_t(6),
+                              std::size_t(8), std::size_t(15), many}) {
     for (const bool warm : {false, true}) {
       const std::vector<double> q = rows(random, n, true), extension = rows(random, n, false);
       const std::vector<sms_pose> from = starts(random, geometry, n);
