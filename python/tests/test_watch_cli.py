@@ -15,6 +15,7 @@ from plant_support import write_bench
 from sms import _core
 from sms.cli import app
 from sms.errors import InputError
+from sms.watch import healthy
 from typer.testing import CliRunner, Result
 
 from validation.twins import effects
@@ -91,7 +92,7 @@ def test_a_stream_that_ends_before_the_machine_is_learned_is_said(
 
 # ---- a bench of another simulator ------------------------------------------------------------------
 
-LEARN, WELL, ILL = 200.0, 60.0, 70.0
+LEARN, WELL, ILL = 150.0, 40.0, 60.0
 LEAK = 7e-10
 """kg/(s Pa), of the lower chamber: three times the detection limit of the blind trials."""
 
@@ -117,7 +118,10 @@ def events(out: Path, event: str) -> list[dict[str, Any]]:
 
 
 @needs_fits
-def test_a_bench_that_begins_to_leak_is_alarmed_and_not_before(day: Path, tmp_path: Path) -> None:
+def test_a_bench_that_begins_to_leak_is_alarmed_and_not_before(
+    day: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(healthy, "FIT_LENGTH", 30.0)  # s; half of it, half as long a fit
     out, told = tmp_path / "out", tmp_path / "told.json"
     keep = "import sys, pathlib; pathlib.Path(sys.argv[1]).write_text(sys.argv[2])"
     result = run(
