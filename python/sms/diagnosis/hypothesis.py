@@ -332,7 +332,8 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
     jacobian, residual = fitted.whiten(found.jacobian), fitted.whiten(found.residual)
     block = runs.block
     if isinstance(found, WindowFit) and found.counted is not None:
-        jacobian, residual, block = (x[found.counted] for x in (jacobian, residual, block))
+        jacobian, residual = jacobian[found.counted], residual[found.counted]
+        block = block[found.counted]
     bread = covariance_from(jacobian.T @ jacobian + pull.T @ pull)
     noise = max(float(np.mean(residual**2)), 1e-12) * fitted.hypothesis.inflation
     by_noise = np.diag(noise * bread)

@@ -20,6 +20,7 @@ from sms.errors import InputError
 from sms.io import check as data_check
 from sms.io.json_files import input_hashes, versions
 from sms.io.measured import declared_of, measured_time
+from sms.io.records import Finding as FindingInFile
 from sms.io.records import Record, load_record
 from sms.io.rig import Rig, load_rig
 from sms.io.thinning import raise_if_too_many, thinned
@@ -96,7 +97,7 @@ def read_and_check(rig: Rig) -> tuple[list[Record], tuple[Finding, ...]]:
     return records, tuple(findings)
 
 
-def _as_told(found: data_check.Finding) -> Finding:
+def _as_told(found: FindingInFile) -> Finding:
     """As it stands in the answer."""
     return Finding(
         found.severity, found.file.name, found.line, found.signal, found.message, found.remedy

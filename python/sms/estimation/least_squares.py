@@ -178,9 +178,14 @@ class _Objective:
 
     def counted(self, rows: Array) -> Array:
         """The rows of a residual or a Jacobian (rows, ...) that no window set aside has."""
+        which = self.which_count()
+        return rows if which is None else np.asarray(rows[which])
+
+    def which_count(self) -> Index | None:
+        """The numbers of these rows; None where all count."""
         if self._window is None or not self._aside.any():
-            return rows
-        return np.asarray(rows[~self._aside[self._window]])
+            return None
+        return np.flatnonzero(~self._aside[self._window])
 
     def cost(self, residual: Array, value: Array) -> float:
         counted = self.counted(residual)
@@ -258,14 +263,13 @@ def fit_windows(
     if not at.exact and worked_out < most_steps:
         objective.work_out(at, kept)
     held = objective.at_bound(at.value)
-    counted = objective.counted(np.arange(len(at.residual)))
     return WindowFit(
         objective.params(at.value),
         np.asarray(at.residual),
         np.asarray(at.slope / objective.scale),
         held.tolist(),
         converged,
-        counted if len(counted) < len(at.residual) else None,
+        objective.which_count(),
     )
 
 
