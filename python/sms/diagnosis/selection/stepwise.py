@@ -9,8 +9,9 @@ How much a model leaves is counted by window and signal (adequacy/residual_energ
 A round. Every effect is tried on top of the model as it stands: by one linear step (score_test.py), and at a ladder of
 finite sizes (finite_steps.py). Those that promise most are fitted, from the better of the two, and with them the rivals
 of the best in its own equation: what helps there, and laws of several parameters, which may help only beside other
-numbers. The best joins the model with whatever cannot be told from it, and so on until nothing stands. In the end each
-cause is taken out again, and must be missed.
+numbers. The best joins the model with whatever cannot be told from it, and so on until nothing stands. Where nothing
+does from the beginning, those that promise next are fitted too, and then pairs. In the end each cause is taken out
+again, and must be missed.
 """
 
 from __future__ import annotations
@@ -109,6 +110,35 @@ def try_effects(
         trial.by_step = steps[k].gain
         trials.append(trial)
     return current, trials
+
+
+def try_more(current: Fitted, data: Data, trials: Sequence[Trial]) -> list[Trial]:
+    """Where nothing that was fitted stands: those that promise next by finite steps, now fitted too, whichever leaves
+    least to its end. What was not fitted was not refused: a lag of friction of 145 ms promises less at 10 ms than
+    effects that are not there, and with all else as it stands more is worse.
+    """
+    rest = [t for t in trials if t.fitted is current and t.by_step > 0.0]
+    if not rest:
+        return []
+    effects = [t.effect for t in rest]
+    steps = best_steps(effects, current, data, declared=data.healthy is not None)
+    chosen = chosen_by_step(steps) if any(step.gain > 0.0 for step in steps) else []
+
+    def candidate(k: int) -> Fitted:
+        room = np.array(room_of(effects[k], current.params, data.rig))
+        return without_sensitivities(_fitted(effects[k], current, data, steps[k], 0.0, room))
+
+    found = leaders_settled(
+        {k: candidate(k) for k in chosen},
+        lambda fitted: logarithms(data.identify, fitted.fit.residual),
+        lambda one, other: False,
+        data,
+    )
+    for k, fitted in found.items():
+        rest[k].fitted, rest[k].reason = fitted, ""
+        rest[k].squared = refitted(fitted, data).fit.residual ** 2
+        rest[k].identified = fitted.fit.residual**2
+    return [rest[k] for k in found]
 
 
 def _promising(
@@ -244,6 +274,9 @@ def stepwise_selection(
             nearby = {t.effect: t.fitted for t in trials if t.fitted is not current}
             current, trials = try_effects(current, data, remaining, rng, nearby)
             judge(trials, current, data, original, needed, rng)
+            members = ambiguity_group(trials, current, data)
+        if not members and number == 1 and (more := try_more(current, data, trials)):
+            judge(more, current, data, original, needed, rng, tried=len(trials))
             members = ambiguity_group(trials, current, data)
         together = (
             [] if members or number > 1 else try_pairs(trials, current, data, original, needed, rng)
