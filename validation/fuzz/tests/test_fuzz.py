@@ -37,7 +37,7 @@ def test_a_thousand_spoilt_inputs_are_answered_or_refused() -> None:
 
 
 def test_some_spoilt_inputs_are_answered_or_refused() -> None:
-    result = fuzz("--seed", "1", "--count", "120", "--only", "scenario")
+    result = fuzz("--seed", "1", "--count", "240", "--only", "scenario")
     assert result.returncode == 0, result.stdout + result.stderr
     assert " 0 answered" not in result.stdout and " 0 refused" not in result.stdout
 
