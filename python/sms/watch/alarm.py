@@ -53,7 +53,7 @@ class Guess:
     @property
     def likelihood_ratio(self) -> float:
         """The same where the scatter is not known beforehand, twice the logarithm. Two segments that happen to ask for
-        nearly one size have hardly any scatter, and a chi-square as large as one likes."""
+        nearly one size have hardly any scatter, and their chi-square has no bound."""
         return (self.freedom + 1.0) * float(np.log1p(self.chi_square / self.freedom))
 
     def __str__(self) -> str:
