@@ -77,7 +77,8 @@ inline sms::ActuatorLaws laws_of(const std::string& friction, const std::string&
 
 inline sms::estimation::Hold hold_of(const std::string& hold) {
   using sms::estimation::Hold;
-  return choice<Hold>("hold", hold, {{"linear", Hold::linear}, {"previous", Hold::previous}});
+  return choice<Hold>("hold", hold,
+                      {{"linear", Hold::linear}, {"previous", Hold::previous}, {"stepped", Hold::stepped}});
 }
 
 inline sms::estimation::ControlLaw control_law(const std::string& law, bool compensated, bool electronics) {

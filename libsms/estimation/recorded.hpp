@@ -16,9 +16,14 @@ namespace estimation {
 
 // What the valve had between two samples of a recorded command.
 enum class Hold : int {
-  linear,   // straight from one to the next: a signal that was sampled
-  previous  // the last one: what a digital controller holds
+  linear,    // straight from one to the next: a signal that was sampled
+  previous,  // the last one: what a digital controller holds
+  stepped    // straight, and held where it jumps: a controller that is faster than its logger
 };
+
+// A change between two samples is a jump where it is so many times the larger of the two beside it. Sampling theory: a sine
+// has such changes only above 0.21 of the sampling rate, where nothing straight between samples is a likeness of it.
+constexpr double kJump = 4.0;
 
 namespace detail {
 
@@ -35,6 +40,13 @@ S command_at(const Eigen::VectorXd& command, const S& at) {
   }
   const Eigen::Index k = static_cast<Eigen::Index>(position);
   return S(command[k]) + (at - S(static_cast<double>(k))) * S(command[k + 1] - command[k]);
+}
+
+// Whether the command jumps between this sample and the next.
+inline bool jumps(const Eigen::VectorXd& command, Eigen::Index sample) {
+  const Eigen::Index last = command.size() - 1;
+  const auto change = [&](Eigen::Index k) { return k < 0 || k >= last ? 0.0 : std::fabs(command[k + 1] - command[k]); };
+  return change(sample) > kJump * std::max(change(sample - 1), change(sample + 1));
 }
 
 // A reading of a sensor at its truth, as its logger has it at a sample: late by what is left beside whole samples of its
@@ -61,6 +73,10 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
 // Where the previous value is held, a step of the integration has the mean of what arrives within it: a jump that a delay
 // has put into the middle of a step keeps its size and its time to first order, and the simulation is smooth in the delay.
 // So has a step over several samples, whichever way the command goes from one to the next.
+//
+// A stepped command has its jump where the sample that shows it was taken: a controller acts on the set-point of its own
+// time, and what it computed is what is logged then. Straight from the sample before, the valve would move ahead of its
+// command by half a sampling period.
 template <typename S>
 class RecordedVoltage {
  public:
@@ -73,9 +89,13 @@ class RecordedVoltage {
   // A step of the integration begins. Whether the voltage at its beginning is another from now on.
   bool begin_step(double at, const Pace& pace) {
     const bool averaged = averages_;
-    averages_ = is_held() || pace.samples > 1;
+    const S from = S(at) - late_;
+    const bool jumps = hold_ == Hold::stepped && jumps_within(from, pace);
+    averages_ = is_held() || jumps || pace.samples > 1;
     if (averages_) {
-      mean_ = is_held() ? mean_from(S(at) - late_, pace) : mean_of_straight(S(at) - late_, pace.samples);
+      mean_ = is_held() ? mean_from(from, pace)
+              : jumps   ? mean_of_stepped(from, pace)
+                        : mean_of_straight(from, pace.samples);
     }
     return averages_ || averaged;
   }
@@ -112,8 +132,7 @@ class RecordedVoltage {
   // Mean over the step that begins at `from`. A jump at its very beginning belongs to the step before, so that the slope
   // against a delay of zero is that towards a longer one.
   S mean_from(const S& from, const Pace& pace) const {
-    using std::ceil;
-    const int sample = static_cast<int>(ceil(value_of(from) - 1e-9)) - 1;
+    const int sample = sample_before(from);
     const S before = (S(sample + 1) - from) * S(pace.parts);  // steps, or samples, until the next one arrives
     if (!(value_of(before) < pace.samples)) {
       return held(sample);
@@ -132,6 +151,33 @@ class RecordedVoltage {
       sum += detail::command_at<S>(command_, from + S(k));
     }
     return sum * S(1.0 / samples);
+  }
+
+  // The sample before which no jump matters to a step from here: one at its very beginning belongs to the step before.
+  static int sample_before(const S& from) { return static_cast<int>(std::ceil(value_of(from) - 1e-9)) - 1; }
+
+  bool jumps_within(const S& from, const Pace& pace) const {
+    const double end = value_of(from) + double(pace.samples) / pace.parts;
+    for (int k = sample_before(from); k < end - 1e-9; ++k) {
+      if (detail::jumps(command_, k)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // The same where it goes straight, and is held between samples that it jumps between.
+  S mean_of_stepped(const S& from, const Pace& pace) const {
+    const double length = double(pace.samples) / pace.parts;
+    const S end = from + S(length);
+    S sum(0), begins = from;
+    for (int k = sample_before(from); value_of(begins) < value_of(end); ++k) {
+      const S ends = k + 1 < value_of(end) ? S(k + 1) : end;
+      const S middle = S(0.5) * (begins + ends);
+      sum += (ends - begins) * (detail::jumps(command_, k) ? held(k) : detail::command_at<S>(command_, middle));
+      begins = ends;
+    }
+    return sum * S(1.0 / length);
   }
 
   const Eigen::VectorXd& command_;

@@ -42,7 +42,7 @@ class RecordedCommand final : public ValveDrive<S> {
   S at(double at) const override { return voltage_.at(first_ + at); }
   void step_begins(const Step& step, const BenchState<S>& y, const ActuatorSensors<S>&, BenchState<S>& rate) override {
     if (voltage_.begin_step(first_ + step.begins(), step.pace)) {
-      drive_rates(p_, laws_, y.actuator, at(0.0), rate.actuator);
+      drive_rates(p_, laws_, y.actuator, at(step.begins()), rate.actuator);
     }
   }
   S* readings(int, S* out) const override { return out; }

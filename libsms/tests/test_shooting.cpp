@@ -407,6 +407,64 @@ TEST_CASE("a command that is held: what arrives in a step is its mean, and a del
   CHECK(arriving(0.0, 2.0) == doctest::Approx(1.0));
 }
 
+TEST_CASE("a stepped command: straight, and held until the sample that shows a jump") {
+  Eigen::VectorXd volts(7);
+  volts << 1.0, 1.1, 1.2, 5.0, 5.1, 5.2, 5.3;
+  CHECK(est::detail::jumps(volts, 2));
+  for (const int sample : {-1, 0, 1, 3, 4, 5, 6, 7}) {
+    CHECK_FALSE(est::detail::jumps(volts, sample));
+  }
+  const auto arriving = [&](double at, const est::Pace& pace, double late) {
+    est::RecordedVoltage<double> command(volts, est::Hold::stepped, late);
+    command.begin_step(at, pace);
+    return command.at(at + double(pace.samples) / pace.parts);
+  };
+  CHECK(arriving(1.0, {10, 1}, 0.0) == doctest::Approx(1.11));
+  CHECK(arriving(2.9, {10, 1}, 0.0) == doctest::Approx(1.2));
+  CHECK(arriving(3.0, {10, 1}, 0.0) == doctest::Approx(5.005));
+  CHECK(arriving(3.0, {10, 1}, 0.1) == doctest::Approx(1.2));
+  CHECK(arriving(3.0, {10, 1}, 0.025) == doctest::Approx(0.25 * 1.2 + 0.75 * (5.0 + 0.1 * 0.0375)));
+  CHECK(arriving(1.0, {1, 3}, 0.0) == doctest::Approx((1.15 + 1.2 + 5.05) / 3.0));
+  CHECK(arriving(2.0, {1, 2}, 0.5) == doctest::Approx((0.5 * 1.175 + 1.2 + 0.5 * 5.025) / 2.0));
+  est::RecordedVoltage<double> command(volts, est::Hold::stepped, 0.0);
+  CHECK(command.begin_step(2.0, {1, 1}));
+  CHECK(command.begin_step(3.0, {1, 1}));
+  CHECK(command.begin_step(4.0, {1, 1}));  // a mean no more
+  CHECK_FALSE(command.begin_step(5.0, {1, 1}));
+}
+
+TEST_CASE("a command that only jumps: stepped is held, whatever the delay and the steps") {
+  Eigen::VectorXd jumping(80);
+  for (int k = 0; k < jumping.size(); ++k) {
+    jumping[k] = k < 15 ? 5.4 : k < 40 ? 6.3 : 4.6;
+  }
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(jumping.size());
+  const est::Window window{0, 0, 80, 0, 240, {}};
+  const double start[est::BenchPlant::kStart] = {0.2, 0.0, 2.6e5, 2.9e5, 4e5, 0.0};
+  const auto readings = [&](est::Hold hold, double late, double longest_step) {
+    est::BenchRecord record{kStep, jumping, zero, zero, zero, {}, {}};
+    record.hold = hold;
+    const est::BenchPlant plant({record}, unit_noise, sms::published_laws(), longest_step);
+    sms::Params<double> p;
+    p.command_delay = late;
+    Eigen::VectorXd out(240);
+    plant.simulate(p, window, start, out.data());
+    return Eigen::MatrixXd(Eigen::Map<est::RowMatrix>(out.data(), 80, 3));
+  };
+  for (const double late : {0.0, 0.3 * kStep, kStep, 2.7 * kStep}) {
+    for (const double longest_step : {1e-3, kStep}) {
+      CAPTURE(late);
+      CAPTURE(longest_step);
+      const Eigen::MatrixXd held = readings(est::Hold::previous, late, longest_step);
+      const Eigen::MatrixXd stepped = readings(est::Hold::stepped, late, longest_step);
+      CHECK((stepped - held).col(0).cwiseAbs().maxCoeff() < 1e-9);
+      CHECK((stepped - held).rightCols(2).cwiseAbs().maxCoeff() < 1e-3);  // Pa
+      const Eigen::MatrixXd straight = readings(est::Hold::linear, late, longest_step);
+      CHECK((straight - held).rightCols(2).cwiseAbs().maxCoeff() > 1e3);
+    }
+  }
+}
+
 TEST_CASE("a clock that is late by whole samples is taken by the index") {
   const sms::Params<double> p;
   const int samples = 620, late = 4;

@@ -256,9 +256,9 @@ class TestWhereTheDataIs:
         assert (record.name, record.file.name) == ("two", "two.csv")
 
 
-def test_the_hold_of_a_command_is_one_of_two_words_and_of_a_command_only(tmp_path: Path) -> None:
+def test_the_hold_of_a_command_is_one_of_three_words_and_of_a_command_only(tmp_path: Path) -> None:
     wrong = WITH_SIGNALS.replace("scale = -1", 'scale = -1, hold = "nxt"')
-    assert failure(write_rig(tmp_path, wrong)).endswith("known are: previous, linear")
+    assert failure(write_rig(tmp_path, wrong)).endswith("known are: previous, linear, stepped")
     other = WITH_SIGNALS.replace("scale = -1", 'scale = -1, hold = "linear"')
     assert "only a valve command can have a hold" in failure(write_rig(tmp_path, other))
 

@@ -63,7 +63,8 @@ CHAMBER = ("polytropic", "energy")
 WORDS = {
     "valve": VALVE, "valve_law": VALVE, "law": VALVE[:2], "friction": FRICTION, "friction_law": FRICTION,
     "chambers": CHAMBER, "chamber_law": CHAMBER, "heat": CHAMBER, "chamber": ("lower", "upper"),
-    "control": ("open_loop", "pid", "state_feedback"), "hold": ("linear", "previous"), "rounding": ("nearest", "down"),
+    "control": ("open_loop", "pid", "state_feedback"), "hold": ("linear", "previous", "stepped"),
+    "rounding": ("nearest", "down"),
     "characters": ("", "status\r", "?"), "message": ("a sentence of its own",),
 }  # fmt: skip
 FAULTS = ("sensor_broken", "sensor_stuck", "sensor_jump", "valve_stuck", "supply_lost", "enable_open",

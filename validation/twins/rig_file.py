@@ -62,11 +62,12 @@ def rig_file(
     calibrated: zero and gain of the pressure sensors are known exactly, and not only as those of any such sensor.
     """
     rows = ["time = " + '"time"']
-    # Held from one row to the next, or only from one of the commands between two rows.
+    # Held from one row to the next, or from one of the commands between two rows, of which the owner knows nothing.
     held = rig.clock.held
-    declared = held and rig.clock.period == rig.sample_step
+    declared = "previous" if held else "linear"
+    known = not held or rig.clock.period == rig.sample_step
     for command in rig.commands:
-        source = f'{{ column = "{command}", hold = "previous" }}' if declared else f'"{command}"'
+        source = f'{{ column = "{command}", hold = "{declared}" }}' if known else f'"{command}"'
         rows.append(f"{command} = {source}")
     for signal in rig.signals:
         channel = channel_of(signal, channels)

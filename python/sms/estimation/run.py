@@ -28,7 +28,8 @@ class Run:
     conditions: dict[str, float]
     """Parameter -> by how much it is larger in this run."""
     hold: Hold = field(default="linear", kw_only=True)
-    """What the command does between two samples: it goes straight to the next, or stays at the previous one."""
+    """What the command does between two samples: it goes straight to the next, stays at the previous one, or goes
+    straight but where it jumps (libsms/estimation/recorded.hpp)."""
     window: float | None = field(default=None, kw_only=True)
     """s: of the windows it is cut into; None: as its kind has it."""
     clipped: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict, kw_only=True)
@@ -76,7 +77,7 @@ def hold_of(rig: Rig, commands: Mapping[str, Array]) -> Hold:
     for name in commands:
         if (said := rig.signals[name].hold) is not None:
             return said
-    return "previous" if commands and all(map(is_held, commands.values())) else "linear"
+    return "previous" if commands and all(map(is_held, commands.values())) else "stepped"
 
 
 def make_run(rig: Rig, record: Record) -> Run:

@@ -150,7 +150,7 @@ class SignalTable(Table):
     """Of a converter: to the nearest step, as without it, or down to the step below."""
     range: list[TextOrNumber] | None = None
     """Of a sensor: the smallest and the largest reading, where it clips."""
-    hold: Literal["previous", "linear"] | None = None
+    hold: Literal["previous", "linear", "stepped"] | None = None
     """Of a command: whether it stays at the last sample until the next, or goes straight there; without it, as the
     record looks.
     """

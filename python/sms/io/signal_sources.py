@@ -20,7 +20,7 @@ from sms.io.signals import (
 )
 from sms.io.units import interval_to_si, to_si
 
-Hold = Literal["previous", "linear"]
+Hold = Literal["previous", "linear", "stepped"]
 Rounding = Literal["nearest", "down"]
 
 

@@ -211,7 +211,7 @@ def test_a_held_command_logged_slowly_is_read(kind: str, tmp_path: Path) -> None
         assert not [f for f in findings if f.severity == "error"]
         runs = [make_run(rig, record) for record in records]
         assert [run.step for run in runs] == pytest.approx([0.01] * 4)
-        assert {run.hold for run in runs} == {"previous" if period == 0.01 else "linear"}
+        assert {run.hold for run in runs} == {"previous" if period == 0.01 else "stepped"}
 
 
 def test_the_folder_does_not_know_how_the_machine_is_off(tmp_path: Path) -> None:
