@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -27,17 +27,23 @@ class Drawn:
 
     inputs: Array
     windows: list[Any]
+    late: Array
+    """(rows, 1): with a delay, s."""
 
     def hidden(self, params: _core.Params, knots: int) -> Array:
         assert knots == KNOTS
         return self.inputs
+
+    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
+        assert list(free) == ["command_delay"]
+        return np.zeros(len(self.late)), self.late
 
 
 def drawn(random: np.random.Generator) -> Drawn:
     rows = WINDOWS * SAMPLES
     windows = [SimpleNamespace(row=k * SAMPLES, rows=SAMPLES) for k in range(WINDOWS)]
     smooth = np.cumsum(random.normal(size=(rows, EQUATIONS * KNOTS)), axis=0)
-    return Drawn(smooth / np.sqrt(SAMPLES), windows)
+    return Drawn(smooth / np.sqrt(SAMPLES), windows, random.normal(0.0, 1e3, size=(rows, 1)))
 
 
 def residual_of(problem: Drawn, tau: Sequence[float], random: np.random.Generator) -> Array:
@@ -79,6 +85,33 @@ def test_the_sizes_of_the_inputs_are_found_and_that_of_one_that_is_not_there_goe
     assert found.tau[1] ** 2 < 5.0 * standard_error_at_nothing(problem, true)
     white = found.whitener.whiten(residual)
     assert np.mean(white**2) == pytest.approx(1.0, abs=0.3)
+
+
+def test_a_delay_of_the_commands_in_each_window_is_one_more_input() -> None:
+    random = draw("delays of commands")
+    problem = drawn(random)
+    true = 10.0 ** random.uniform(-2.5, -1.5)
+    late = np.repeat(true * random.normal(size=WINDOWS), SAMPLES)
+    residual = residual_of(problem, (1.0, 0.0), random) + problem.late[:, 0] * late
+    plain = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
+    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual, delays=("command_delay",))
+    assert found.tau[-1] == pytest.approx(np.std(late), rel=0.5)
+    white = (one.whitener.whiten(residual) for one in (found, plain))
+    left, left_by_equations_alone = (float(np.mean(w**2)) for w in white)
+    assert left == pytest.approx(1.0, abs=0.3)
+    assert left_by_equations_alone > 2.0
+    sized = Discrepancy.sized(problem, _core.Params(), found.tau, ("command_delay",))
+    assert sized.whitener.whiten(residual) == pytest.approx(
+        replace(found, larger=1.0).whitener.whiten(residual)
+    )
+    none = Discrepancy.of(
+        problem,
+        _core.Params(),
+        EQUATIONS,
+        residual_of(problem, (1.0, 0.0), random),
+        delays=("command_delay",),
+    )
+    assert none.tau[-1] < 0.1 * found.tau[-1]
 
 
 def standard_error_at_nothing(problem: Drawn, first: float) -> float:

@@ -7,7 +7,10 @@ residual of a window has the covariance
 
   V = I + H diag(tau^2) H'
 
-in units of the noise. A window in which the piston hangs on a stop or breaks away asks for inputs far larger than the
+in units of the noise. One more input is the time at which a command came: what a logger has of a command that goes in
+steps tells to within its sampling period when the valve was switched, and each window has an error of its own of it.
+
+A window in which the piston hangs on a stop or breaks away asks for inputs far larger than the
 others do: they are larger there, and say little of tau (Student's t, variance_components.py). Generalised least squares
 with V asks of a parameter what a wandering input cannot do as well: a standard error grows where the discrepancy can
 imitate it, and no parameter is driven to its bound by a friction or a flow that is a little off. The tau come from the
@@ -24,7 +27,7 @@ from typing import Protocol
 import numpy as np
 
 from sms import _core
-from sms.arrays import Array
+from sms.arrays import Array, Index
 from sms.estimation.problem import Problem, Window
 from sms.estimation.variance_components import most_likely
 
@@ -44,6 +47,8 @@ class Shot(Protocol):
 
     def hidden(self, params: _core.Params, knots: int) -> Array: ...
 
+    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]: ...
+
 
 @dataclass(frozen=True)
 class Discrepancy:
@@ -52,13 +57,16 @@ class Discrepancy:
     rows: tuple[slice, ...]
     """Of each window."""
     inputs: Array
-    """(rows, equations * knots): change of the residual with each input at each knot of its window."""
+    """(rows, equations * KNOTS + delays): change of the residual with each input at each knot of its window, then with
+    each delay."""
     products: Array
-    """(windows, equations * knots, equations * knots): of the inputs with each other."""
+    """(windows, inputs, inputs): of the inputs with each other."""
+    group: Index
+    """(inputs,): the equation whose input each is; the last group are the delays, if there are any."""
     tau: Array
-    """(equations,): standard deviation of each equation's input."""
+    """(groups,): standard deviation of each equation's input; of the delays, s."""
     larger: Array | float = 1.0
-    """(windows, equations): by which factor it is larger in a window."""
+    """(windows, groups): by which factor it is larger in a window."""
     alike: bool = False
     """Whether it is the same in all windows, as one is that has to hold on other records."""
 
@@ -70,41 +78,53 @@ class Discrepancy:
         equations: int,
         residual: Array,
         alike: bool = False,
+        delays: Sequence[str] = (),
     ) -> Discrepancy:
-        """As likely as can be for the residual (rows,) of a model with these parameters."""
-        blank = replace(cls.sized(problem, params, np.zeros(equations)), alike=alike)
+        """As likely as can be for the residual (rows,) of a model with these parameters. delays: the parameters that
+        say how late commands come."""
+        groups = equations + (1 if delays else 0)
+        blank = replace(cls.sized(problem, params, np.zeros(groups), delays), alike=alike)
         level = max(float(np.linalg.norm(residual)) / np.sqrt(len(blank.rows) * KNOTS), LEAST)
         return replace(blank, tau=blank.moving(level)).fitted_to(residual)
 
     @classmethod
-    def sized(cls, problem: Shot, params: _core.Params, tau: Array) -> Discrepancy:
-        """With standard deviations (equations,) that are known from elsewhere."""
+    def sized(
+        cls, problem: Shot, params: _core.Params, tau: Array, delays: Sequence[str] = ()
+    ) -> Discrepancy:
+        """With standard deviations (groups,) that are known from elsewhere."""
         rows = tuple(slice(w.row, w.row + w.rows) for w in problem.windows)
         inputs = np.asarray(problem.hidden(params, KNOTS))
+        group = np.repeat(np.arange(inputs.shape[1] // KNOTS), KNOTS)
+        if delays:
+            _, late = problem.evaluate(params, delays)
+            inputs = np.hstack([inputs, np.where(np.isfinite(late), late, 0.0)])
+            group = np.concatenate([group, np.full(len(delays), len(tau) - 1)])
         products = np.array([inputs[r].T @ inputs[r] for r in rows])
-        return cls(rows, inputs, products, np.asarray(tau))
+        return cls(rows, inputs, products, group, np.asarray(tau))
 
     def moving(self, level: float) -> Array:
-        """(equations,): tau of inputs that each move the readings by so much; 0 where none does."""
-        squares = np.einsum("wii->i", self.products).reshape(len(self.tau), -1).mean(axis=1)
+        """(groups,): tau of inputs that each move the readings by so much; 0 where none does."""
+        squares = np.bincount(self.group, np.einsum("wii->i", self.products)) / np.bincount(
+            self.group
+        )
         size = np.sqrt(squares)
         return np.where(size > 0.0, level / np.where(size > 0.0, size, 1.0), 0.0)
 
     def fitted_to(self, residual: Array) -> Discrepancy:
         """With the standard deviations under which the residual (rows,) is most likely."""
-        equations = len(self.tau)
         least = self.moving(LEAST * np.sqrt(len(self.rows)))
         score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])
-        group = np.repeat(np.arange(equations), self.inputs.shape[1] // max(equations, 1))
         start = np.maximum(self.tau, 30.0 * least)
-        tau, larger = most_likely(self.products, score, group, start, least, ITERATIONS, self.alike)
+        tau, larger = most_likely(
+            self.products, score, self.group, start, least, ITERATIONS, self.alike
+        )
         return replace(self, tau=tau, larger=larger)
 
     @cached_property
     def whitener(self) -> Whitener:
         """Multiplies by the inverse root of the covariance."""
         tau = self.tau * np.broadcast_to(self.larger, (len(self.rows), len(self.tau)))
-        d = np.repeat(tau, self.inputs.shape[1] // max(len(self.tau), 1), axis=1)
+        d = tau[:, self.group]
         value, vector = np.linalg.eigh(d[:, :, None] * self.products * d[:, None, :])
         value = np.maximum(value, 1e-12)
         bases = [

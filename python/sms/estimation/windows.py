@@ -108,11 +108,12 @@ class Runs:
     ) -> Discrepancy:
         """The random hidden inputs for which the residual (rows,) of these parameters is most likely; if `alike`, those
         that are equally large in all windows."""
-        return Discrepancy.of(self.problem, params, len(self.kind.hidden), residual, alike)
+        equations, delays = len(self.kind.hidden), self.kind.delays
+        return Discrepancy.of(self.problem, params, equations, residual, alike, delays)
 
     def discrepancy_of(self, params: _core.Params, tau: Array) -> Discrepancy:
-        """Random hidden inputs of standard deviations (equations,) that other records told."""
-        return Discrepancy.sized(self.problem, params, tau)
+        """Random hidden inputs of standard deviations (groups,) that other records told."""
+        return Discrepancy.sized(self.problem, params, tau, self.kind.delays)
 
     @cached_property
     def whole(self) -> Runs:

@@ -276,5 +276,6 @@ PLATFORM = Kind(
     shown=(*of_legs("extension", "valve_command"),),
     menu=MENU,
     equations=EQUATIONS,
+    delays=tuple(f"command_delay:{leg}" for leg in LEGS),
     read_directly=READ_DIRECTLY,
 )

@@ -113,7 +113,7 @@ class Innovations:
                 else next(by_step)
             )
         columns[~np.isfinite(columns)] = 0.0
-        discrepancy = Discrepancy.sized(problem, self.params, self.tau)
+        discrepancy = runs.discrepancy_of(self.params, self.tau)
         white = discrepancy.whitener.whiten
         residual, columns = white(residual), white(columns)
         return Scores(
@@ -124,7 +124,7 @@ class Innovations:
             np.concatenate(
                 [
                     _of_signals(residual, runs, self.channels),
-                    _of_equations(residual, discrepancy, len(self.tau)),
+                    _of_equations(residual, discrepancy, len(self.kind.hidden)),
                 ]
             ),
         )
@@ -142,7 +142,7 @@ def _of_signals(white: Array, runs: Runs, channels: Sequence[str]) -> Array:
 
 def _of_equations(white: Array, discrepancy: Discrepancy, equations: int) -> Array:
     """(equations,): the score of each equation's input at every knot, in units of what noise makes of it."""
-    inputs = discrepancy.whitener.whiten(discrepancy.inputs)
+    inputs = discrepancy.whitener.whiten(discrepancy.inputs[:, : equations * KNOTS])
     squares, of_noise = np.zeros(equations * KNOTS), np.zeros(equations * KNOTS)
     for rows in discrepancy.rows:
         squares += (inputs[rows].T @ white[rows]) ** 2
