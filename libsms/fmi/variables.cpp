@@ -51,7 +51,7 @@ bool within(const Rows (&rows)[N], int index) {
 // Whether a parameter is that of the sensor of one of these signals.
 bool of_sensor(const std::string& name, const char* const* signals, int count) {
   for (int i = 0; i < count; ++i) {
-    for (const char* error : {"sensor_gain_", "sensor_offset_", "sensor_linearity_", "sensor_lag_"}) {
+    for (const char* error : {"sensor_gain_", "sensor_offset_", "sensor_linearity_", "sensor_lag_", "sensor_datum_"}) {
       if (name == std::string(error) + signals[i]) {
         return true;
       }

@@ -127,6 +127,23 @@ TEST_CASE("gain and zero: a reading has its truth back, about the datum of a the
   CHECK(thermocouple.reading(303.0) == doctest::Approx(304.0));
 }
 
+TEST_CASE("a gain error is a share of what the sensor itself reads: at its datum there is none") {
+  sms_test::Random random;
+  for (int i = 0; i < 1000; ++i) {
+    sms::Params<double> p;
+    p.sensor_gain_extension = random.uniform(-0.5, 0.5);
+    p.sensor_offset_extension = random.uniform(-1e-2, 1e-2);
+    p.sensor_datum_extension = random.uniform(-0.5, 0.5);
+    const sms::SensorErrors<double> sensor = sms::extension_sensor(p);
+    CHECK(sensor.reading(p.sensor_datum_extension) - p.sensor_datum_extension ==
+          doctest::Approx(p.sensor_offset_extension).epsilon(1e-9).scale(1.0));
+    const double truth = random.uniform(0.0, 0.4), from_datum = truth - p.sensor_datum_extension;
+    CHECK(sensor.reading(truth) ==
+          doctest::Approx(truth + p.sensor_gain_extension * from_datum + p.sensor_offset_extension));
+    CHECK(sensor.truth(sensor.reading(truth)) == doctest::Approx(truth).epsilon(1e-12).scale(1.0));
+  }
+}
+
 TEST_CASE("linearity: a reading has its truth back, and no straight line is nearer than the bow") {
   sms_test::Random random;
   for (int i = 0; i < sms_test::count; ++i) {

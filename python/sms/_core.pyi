@@ -1630,6 +1630,46 @@ class Params:
     def rod_diameter(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def sensor_datum_chamber_pressure_lower(self) -> float:
+        """
+        signal at which the sensor of chamber_pressure_lower itself reads nothing; a gain error is a share of what it reads from there [Pa]; assumed, where a record's column is zero
+        """
+    @sensor_datum_chamber_pressure_lower.setter
+    def sensor_datum_chamber_pressure_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_datum_chamber_pressure_upper(self) -> float:
+        """
+        signal at which the sensor of chamber_pressure_upper itself reads nothing; a gain error is a share of what it reads from there [Pa]; assumed, where a record's column is zero
+        """
+    @sensor_datum_chamber_pressure_upper.setter
+    def sensor_datum_chamber_pressure_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_datum_extension(self) -> float:
+        """
+        signal at which the sensor of extension itself reads nothing; a gain error is a share of what it reads from there [m]; assumed, where a record's column is zero
+        """
+    @sensor_datum_extension.setter
+    def sensor_datum_extension(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_datum_supply_pressure(self) -> float:
+        """
+        signal at which the sensor of supply_pressure itself reads nothing; a gain error is a share of what it reads from there [Pa]; assumed, where a record's column is zero
+        """
+    @sensor_datum_supply_pressure.setter
+    def sensor_datum_supply_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def sensor_datum_tank_pressure(self) -> float:
+        """
+        signal at which the sensor of tank_pressure itself reads nothing; a gain error is a share of what it reads from there [Pa]; assumed, where a record's column is zero
+        """
+    @sensor_datum_tank_pressure.setter
+    def sensor_datum_tank_pressure(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def sensor_gain_chamber_pressure_lower(self) -> float:
         """
         sensor_gain: relative gain error of the lower chamber pressure sensor [1]; neutral

@@ -212,6 +212,35 @@ def test_a_parameter_of_one_leg_is_written_into_the_rig_file_of_a_platform(tmp_p
     assert rig.start()["chamber_leakage_lower"] == 0.0
 
 
+def test_a_sensor_s_gain_is_that_of_what_its_column_reads(tmp_path: Path) -> None:
+    plain = load_rig(bench(tmp_path)).start()
+    assert all(plain[n] == 0.0 for n in PARAMETERS if n.startswith("sensor_datum_"))
+    text = BENCH.replace(
+        'extension = { noise = "0.05 mm"', 'extension = { offset = "200 mm", noise = "0.05 mm"'
+    ).replace('lower = { noise = "4 mbar" }', 'lower = { noise = "4 mbar", gauge = true }')
+    rig = load_rig(bench(tmp_path, text))
+    params = rig.start()
+    assert params["sensor_datum_extension"] == pytest.approx(0.2)
+    ambient = rig.declared("ambient_pressure").value
+    assert params["sensor_datum_chamber_pressure_lower"] == ambient
+    assert params["sensor_datum_chamber_pressure_upper"] == 0.0
+
+
+def test_each_leg_s_sensor_has_a_datum(tmp_path: Path) -> None:
+    needed = [n for n in KINDS["platform"].needed if n != "time"]
+    lines = "".join(f"{n} = {{}}\n" for n in needed if n != "extension_2")
+    record = '[[records]]\nfile = "one.csv"\nrole = "identify"\n'
+    write_record(
+        tmp_path / "one.csv", {n: np.linspace(0.0, 1.0, 5) for n in KINDS["platform"].needed}
+    )
+    path = tmp_path / "rig.toml"
+    offset = 'extension_2 = { offset = "0.3 m" }\n'
+    path.write_text(f'[rig]\nkind = "platform"\n[signals]\ntime = "time"\n{lines}{offset}{record}')
+    machine = load_rig(path).start()
+    assert isinstance(machine, sms._core.LegParams)
+    assert [leg["sensor_datum_extension"] for leg in machine.legs] == pytest.approx([0.0, 0.3, 0.0])
+
+
 @pytest.mark.parametrize(
     ("unit", "factor", "line"),
     [

@@ -96,8 +96,7 @@ FlowTest<S> flow_test_rate(const Params<S>& p, FlowTestKind kind, const S& time,
 // Pa absolute, what the pressure sensor says while `inflow` passes its line.
 template <typename S>
 S tank_pressure_reading(const Params<S>& p, const S& pressure, const S& inflow) {
-  const S seen = sensor_reading<S>(pressure + p.tank_line_resistance * inflow, p.sensor_gain_tank_pressure,
-                                   p.sensor_offset_tank_pressure);
+  const S seen = tank_pressure_sensor(p).reading(pressure + p.tank_line_resistance * inflow);
   return limited(seen, p.tank_pressure_floor, p.tank_pressure_ceiling);
 }
 

@@ -2,8 +2,9 @@
 //
 //   truth -> mount, play -> lag of its filter -> gain, zero, linearity -> noise -> range -> rounding -> clock of its logger
 //
-// Gain and zero: reading = datum + (1 + gain) (truth - datum) + offset. The datum is zero but for a thermocouple, which
-// measures against its cold junction. The model computes with truths; a record holds readings.
+// Gain and zero: reading = datum + (1 + gain) (truth - datum) + offset. The datum is where the sensor itself reads nothing:
+// at mid-stroke for one whose record counts from there, at the ambient pressure for one that reads against it, at its cold
+// junction for a thermocouple. The model computes with truths; a record holds readings.
 //
 // Linearity. What a data sheet calls so is how far a sensor is off its best straight line; the simplest way to be off is
 // a bow over its span, the second Chebyshev polynomial,
@@ -59,8 +60,7 @@ struct SensorErrors {
   S from{0}, to{1};  // its span, in the signal's unit
 
   S reading(const S& truth) const {
-    const S straight =
-        has_datum() ? S(datum + sensor_reading<S>(truth - datum, gain, offset)) : sensor_reading(truth, gain, offset);
+    const S straight = has_datum() ? S(truth + gain * (truth - datum) + offset) : sensor_reading(truth, gain, offset);
     if (is_absent(linearity)) {
       return straight;
     }
@@ -69,8 +69,7 @@ struct SensorErrors {
   }
 
   S truth(const S& reading) const {
-    const S straight =
-        has_datum() ? S(datum + sensor_truth<S>(reading - datum, gain, offset)) : sensor_truth(reading, gain, offset);
+    const S straight = sensor_truth(has_datum() ? S(reading + gain * datum) : reading, gain, offset);
     return is_absent(linearity) ? straight : bowed_truth(straight);
   }
 
@@ -80,7 +79,7 @@ struct SensorErrors {
   }
 
  private:
-  bool has_datum() const { return value_of(datum) > ValueOf<S>(0); }
+  bool has_datum() const { return !is_absent(datum); }
 
   // From -1 to 1 over the span.
   S place(const S& truth) const { return (S(2) * truth - from - to) / (to - from); }

@@ -134,6 +134,7 @@ class Rig:
     def start(self) -> _core.Params:
         """Every parameter as declared."""
         declared = {name: known.value for name, known in self.parameters.items()}
+        declared = self._datums() | declared
         common = _core.Params(**{n: value for n, value in declared.items() if not is_of_leg(n)})
         if self.kind != "platform":
             return common
@@ -142,6 +143,23 @@ class Rig:
             if is_of_leg(name):
                 machine[name] = value
         return machine
+
+    def _datums(self) -> dict[str, float]:
+        """Where each sensor itself reads nothing: where its column is zero, and at ambient of one that reads against
+        it. A cylinder's gauge pressures stay so (estimation/cylinder.hpp). Of three legs' sensors: the first one's, and
+        by how much the others' are larger."""
+        ambient = 0.0 if self.kind == "cylinder" else self.declared("ambient_pressure").value
+        at = {s: w.offset + (ambient if w.gauge else 0.0) for s, w in self.signals.items()}
+        of: dict[str, float] = {}
+        for signal, value in at.items():
+            name = f"sensor_datum_{without_leg(signal)}"
+            if name not in PARAMETERS:
+                continue
+            common = of.setdefault(name, value)
+            if value != common:
+                of[f"{name}:{signal[-1]}"] = value - common
+        # What is beyond is found where the readings are looked at.
+        return {n: v for n, v in of.items() if self.table[n].lower <= v <= self.table[n].upper}
 
 
 def load_rig(path: str | os.PathLike[str]) -> Rig:
