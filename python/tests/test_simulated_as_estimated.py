@@ -374,8 +374,9 @@ def name_of(setting: Setting, effect: Effect) -> str:
 
 
 def case(setting: Setting, effect: Effect) -> ParameterSet:
-    """Heavy where a bench has shown it under that controller, and a platform under another, or in another leg."""
-    known = (setting.kind, setting.law) == ("platform", "state_feedback")
+    """Heavy where a bench has shown it under that controller, and a platform with its command recorded, or in another
+    leg."""
+    known = setting.kind == "platform" and setting.law is not None
     first_or_third = bool(re.search(r"(_| leg )[13]$", effect.signal or ""))
     heavy = (known or first_or_third) and effect.controller is None
     marks = [pytest.mark.full] if heavy else []

@@ -302,9 +302,9 @@ def next_experiment(diagnosis: Diagnosis) -> str:
 def _without_measuring(diagnosis: Diagnosis) -> str:
     if diagnosis.causes:
         return (
-            "No measurement is proposed: these records distinguish the explanation from all others that were "
-            "tested. Find it on the machine and repair it, or keep it and simulate with extended.toml, written beside "
-            "this page."
+            "No measurement is proposed: every other effect that was tested was rejected on these records, and "
+            "'Effects tested' says why. Find the cause on the machine and repair it, or keep it and simulate with "
+            "extended.toml, written beside this page."
         )
     if diagnosis.verdict == "data-fault":
         return "Correct what the data check found, then diagnose again."
