@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +35,7 @@ from sms.diagnosis.remainder import Unexplained
 from sms.diagnosis.selection.finite_steps import extended
 from sms.diagnosis.thresholds import LEAST_SHARE, NEARLY_ALL
 from sms.estimation.least_squares import changed
-from sms.estimation.run import is_held
+from sms.estimation.run import hold_of, is_held
 from sms.io.check import check_record
 from sms.io.records import load_record
 from sms.io.rig import Rig, load_rig
@@ -290,6 +291,20 @@ def test_a_command_is_held_where_it_goes_in_steps() -> None:
     assert is_held(np.repeat(ramp[::20], 20))
     assert not is_held(np.full(200, 5.0))
     assert not is_held(np.interp(np.arange(200.0), [0, 90, 95, 200], [5, 5, 6, 6]))  # a short ramp
+
+
+def test_a_logger_as_fast_as_the_controller_has_every_command(tmp_path: Path) -> None:
+    """Of a smooth command: what the controller held is known where one sample a control period is logged."""
+    rig = load_rig(write_bench(tmp_path, 1, {}))
+    said = replace(rig.signals["valve_command"], hold=None)
+    rig = replace(rig, signals={**rig.signals, "valve_command": said})
+    command = {"valve_command": 5.0 + np.sin(np.linspace(0.0, 6.0, 200))}
+    period = rig.declared("control_period").value
+    assert hold_of(rig, command, period) == hold_of(rig, command, 1.005 * period) == "previous"
+    assert hold_of(rig, command, 5.0 * period) == hold_of(rig, command, 0.5 * period) == "stepped"
+    slower = replace(rig.declared("control_period"), value=5.0 * period)
+    rig = replace(rig, parameters={**rig.parameters, "control_period": slower})
+    assert hold_of(rig, command, 5.0 * period) == "previous"
 
 
 def test_an_answer_is_right_only_with_every_hidden_effect_and_nothing_else() -> None:

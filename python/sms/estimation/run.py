@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -65,6 +66,11 @@ HELD = 0.9
 """Share of the samples that repeat the one before, from which a command counts as held between samples."""
 
 
+CLOCKS = 0.01
+"""By how much the rates of two clocks differ at most where they are meant to be the same: quartz keeps 1e-4, an RC
+oscillator 1e-2."""
+
+
 def is_held(command: Array) -> bool:
     """Whether a command goes in steps: it mostly repeats, and where it changes it does so between two samples."""
     moves = np.diff(command) != 0.0
@@ -72,12 +78,19 @@ def is_held(command: Array) -> bool:
     return bool(0.0 < np.mean(moves) < 1.0 - HELD and in_a_row < (1.0 - HELD) * np.sum(moves))
 
 
-def hold_of(rig: Rig, commands: Mapping[str, Array]) -> Hold:
-    """What these commands do between their samples: as the rig file says, else as the record looks."""
+def hold_of(rig: Rig, commands: Mapping[str, Array], step: float) -> Hold:
+    """What these commands do between their samples: as the rig file says, else as the record looks.
+
+    step, s, is the record's: a logger at the controller's rate has every command that it held.
+    """
     for name in commands:
         if (said := rig.signals[name].hold) is not None:
             return said
-    return "previous" if commands and all(map(is_held, commands.values())) else "stepped"
+    is_logged = "control_period" in rig.table and math.isclose(
+        step, rig.declared("control_period").value, rel_tol=CLOCKS
+    )
+    is_known = is_logged or all(map(is_held, commands.values()))
+    return "previous" if commands and is_known else "stepped"
 
 
 def make_run(rig: Rig, record: Record) -> Run:
@@ -88,14 +101,16 @@ def make_run(rig: Rig, record: Record) -> Run:
         for name, values in record.signals.items()
     }
     source = next(s for s in rig.records if s.name == record.name)
+    time = signals.pop("time")
+    commands = {n: v for n, v in signals.items() if n.startswith("valve_command")}
     return Run(
         record.name,
         record.role,
-        signals.pop("time"),
+        time,
         signals,
         record.gauge,
         {n: v - rig.declared(n).value for n, v in source.conditions.items()},
-        hold=hold_of(rig, {n: v for n, v in signals.items() if n.startswith("valve_command")}),
+        hold=hold_of(rig, commands, float((time[-1] - time[0]) / (len(time) - 1))),
         clipped=clipped_of(rig, record.signals),
         commanded=rig.control.controller == "simulated" and source.control.controller == "recorded",
     )
