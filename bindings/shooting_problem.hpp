@@ -161,7 +161,17 @@ auto bind_shooting_problem(py::module_& m, const char* name) {
             return p.hidden(params, knots);
           },
           py::arg("params"), py::arg("knots"),
-          "(rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.");
+          "(rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.")
+      .def(
+          "jumps",
+          [](const Problem& p, const typename Problem::template Machine<double>& params) {
+            const Exclusive alone(&p);
+            return p.jumps(params);
+          },
+          py::arg("params"),
+          "(rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command "
+          "come "
+          "ahead of the sample that shows them; zeros where there are fewer.");
   return problem;
 }
 

@@ -26,8 +26,8 @@ class BenchLoopPlant : public BenchPlant {
   static bool feels_all(const Params<double>&, const Window&) { return true; }
 
   template <typename S>
-  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
-                int knots = 0) const;
+  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
+                const Hidden<S>& hidden = {}) const;
 
  private:
   ControlRecord control_record(int record) const {
@@ -44,14 +44,14 @@ class BenchLoopPlant : public BenchPlant {
 
 template <typename S>
 void BenchLoopPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
-                              const S* hidden, int knots) const {
+                              const Hidden<S>& hidden) const {
   const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step_);
-  const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(BenchPlant::kHidden);
+  const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, window.samples).from(BenchPlant::kHidden);
   const DriveOf<S> controlled = [&](const Bench<S>& bench, const S& h) {
     return std::make_unique<SimulatedController<S>>(bench.params, laws(), control_record(window.record), window, law_,
                                                     grid, h, start[BenchPlant::kStart], at_output, command_noise_);
   };
-  simulate_driven(params, window, SampleSteps(grid.steps), controlled, start, residual, hidden, knots);
+  simulate_driven(params, window, SampleSteps(grid.steps), controlled, start, residual, hidden);
 }
 
 // Compiled in bench_loop.cpp.

@@ -47,8 +47,9 @@ class BenchPlant {
  public:
   template <typename S>
   using Machine = Params<S>;
-  static constexpr int kStart = 8;   // x, v, p_a, p_b, p_R, z, T_a - T, T_b - T
-  static constexpr int kFelt = 4;    // without droop, deflection and heat
+  static constexpr int kStart = 8;  // x, v, p_a, p_b, p_R, z, T_a - T, T_b - T
+  static constexpr int kFelt = 4;   // without droop, deflection and heat
+  static constexpr int kCommands = 1;
   static constexpr int kHidden = 3;  // force, N; mass flow into the lower and into the upper chamber, kg/s
 
   // std::invalid_argument for arrays of different lengths or numbers that are not finite; a reading may be NaN.
@@ -70,10 +71,10 @@ class BenchPlant {
   // The whole state where a window begins, in the order of BenchState.
   Eigen::VectorXd state(const Params<double>& params, const Window& window, const Eigen::VectorXd& start) const;
 
-  // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
+  // residual: for each sample of the window, each channel.
   template <typename S>
-  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
-                int knots = 0) const;
+  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
+                const Hidden<S>& hidden = {}) const;
 
  protected:
   const BenchRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
@@ -91,7 +92,7 @@ class BenchPlant {
   // As simulate(), in these steps.
   template <typename S>
   void simulate_driven(const Params<S>& params, const Window& window, const SampleSteps& steps,
-                       const DriveOf<S>& drive_of, const S* start, S* residual, const S* hidden, int knots) const;
+                       const DriveOf<S>& drive_of, const S* start, S* residual, const Hidden<S>& hidden) const;
 
   // The state in which a window begins.
   template <typename S>
@@ -137,15 +138,15 @@ S* BenchPlant::readings(const BenchRecord& record, int sample, const Bench<S>& b
 }
 
 template <typename S>
-void BenchPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
-                          int knots) const {
+void BenchPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
+                          const Hidden<S>& hidden) const {
   const BenchRecord& record = of(window.record);
   const SampleSteps& steps = steps_[static_cast<std::size_t>(window.record)];
   const DriveOf<S> recorded = [&](const Bench<S>& bench, const S& h) {
     return std::make_unique<RecordedCommand<S>>(bench.params, bench.laws, record.command, record.hold, record.step,
-                                                window.first, steps.most(), h);
+                                                window, steps.most(), h, hidden.ahead);
   };
-  simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
+  simulate_driven(params, window, steps, recorded, start, residual, hidden);
 }
 
 template <typename S>
@@ -167,12 +168,12 @@ BenchState<S> BenchPlant::begin(const Bench<S>& bench, const Window& window, con
 
 template <typename S>
 void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, const SampleSteps& steps,
-                                 const DriveOf<S>& drive_of, const S* start, S* residual, const S* hidden,
-                                 int knots) const {
+                                 const DriveOf<S>& drive_of, const S* start, S* residual,
+                                 const Hidden<S>& hidden) const {
   const BenchRecord& record = of(window.record);
   const Bench<S> bench = make_bench(in_run(params, record), laws_);
   const Params<S>& p = bench.params;
-  const HiddenInputs<S> pushes(hidden, knots, window.samples);
+  const HiddenInputs<S> pushes(hidden, window.samples);
   const S shortest(record.step / steps.most());
   const std::unique_ptr<ValveDrive<S>> driven_by = drive_of(bench, shortest);
   ValveDrive<S>& drive = *driven_by;
@@ -216,7 +217,7 @@ void BenchPlant::simulate_driven(const Params<S>& params, const Window& window, 
 // Compiled in bench_plant.cpp. What drives the valve is the same code at each scalar, here and in bench_loop.cpp.
 #define SMS_BENCH_IS_DRIVEN(S)                                                                                         \
   template void BenchPlant::simulate_driven<S>(const Params<S>&, const Window&, const SampleSteps&, const DriveOf<S>&, \
-                                               const S*, S*, const S*, int) const
+                                               const S*, S*, const Hidden<S>&) const
 extern SMS_BENCH_IS_DRIVEN(double);
 extern SMS_BENCH_IS_DRIVEN(ParameterJet);
 extern SMS_PLANT_SIMULATES(BenchPlant, double);

@@ -1,4 +1,5 @@
-// Inputs that are hidden in a plant's equations: of each a number of values over a window, straight in between.
+// What a record does not tell of a window, and a simulation takes beside its parameters: inputs that are hidden in the
+// plant's equations, of each a number of values over the window, straight in between; and when the command jumped.
 #pragma once
 
 #include <algorithm>
@@ -6,11 +7,19 @@
 namespace sms {
 namespace estimation {
 
+// Nothing by default.
+template <typename S>
+struct Hidden {
+  const S* inputs = nullptr;  // `knots` values of each of the plant's kHidden inputs, one input after the other
+  int knots = 0;
+  const S* ahead = nullptr;  // s, of kJumps jumps of each of the plant's kCommands commands (command_jumps.hpp)
+};
+
 template <typename S>
 class HiddenInputs {
  public:
-  // values: `knots` of each input, one input after the other; nullptr for none. samples: of the window.
-  HiddenInputs(const S* values, int knots, int samples) : values_(values), knots_(knots), samples_(samples) {}
+  // samples: of the window.
+  HiddenInputs(const Hidden<S>& hidden, int samples) : HiddenInputs(hidden.inputs, hidden.knots, samples) {}
 
   explicit operator bool() const { return values_ != nullptr; }
 
@@ -28,6 +37,8 @@ class HiddenInputs {
   }
 
  private:
+  HiddenInputs(const S* values, int knots, int samples) : values_(values), knots_(knots), samples_(samples) {}
+
   const S* values_;
   int knots_;
   int samples_;

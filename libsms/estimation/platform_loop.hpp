@@ -33,7 +33,7 @@ class PlatformLoopPlant : public PlatformPlant {
 
   template <typename S>
   void simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
-                const S* hidden = nullptr, int knots = 0) const;
+                const Hidden<S>& hidden = {}) const;
 
  private:
   ControlRecord control_record(int record, int leg) const {
@@ -51,18 +51,18 @@ class PlatformLoopPlant : public PlatformPlant {
 
 template <typename S>
 void PlatformLoopPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
-                                 const S* hidden, int knots) const {
+                                 const Hidden<S>& hidden) const {
   const ControlGrid grid = control_grid(step(window.record), value_of(params.control_period), longest_step_);
   const DrivesOf<S> controlled = [&](const LegMachines<S>& machines, const S& h) {
     const auto of_leg = [&](int i) {
-      const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, knots, window.samples).from(PlatformPlant::kHidden + i);
+      const HiddenInputs<S> at_output = HiddenInputs<S>(hidden, window.samples).from(PlatformPlant::kHidden + i);
       return std::make_unique<SimulatedController<S>>(machines.leg[i], laws(), control_record(window.record, i), window,
                                                       law_, grid, h, start[PlatformPlant::kStart + i], at_output,
                                                       command_noise_(i));
     };
     return LegDrives<S>{{of_leg(0), of_leg(1), of_leg(2)}};
   };
-  simulate_driven(params, window, SampleSteps(grid.steps), controlled, start, residual, hidden, knots);
+  simulate_driven(params, window, SampleSteps(grid.steps), controlled, start, residual, hidden);
 }
 
 // Compiled in platform_loop.cpp.

@@ -60,6 +60,7 @@ class PlatformPlant {
   using Machine = LegParams<S>;
   static constexpr int kStart = 18;  // three each of x, v, p_a, p_b, p_R, z
   static constexpr int kFelt = 12;   // without droop and deflection
+  static constexpr int kCommands = 3;
   static constexpr int kHidden = 9;  // three each of force, N; mass flow into lower and into upper chamber, kg/s
 
   // std::invalid_argument for arrays of different lengths, numbers that are not finite (a pressure, roll or pitch may be
@@ -81,10 +82,10 @@ class PlatformPlant {
   // Whether reservoirs or seals begin with something of their own.
   bool feels_all(const LegParams<double>& params, const Window& window) const;
 
-  // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
+  // residual: for each sample of the window, each channel.
   template <typename S>
   void simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
-                const S* hidden = nullptr, int knots = 0) const;
+                const Hidden<S>& hidden = {}) const;
 
  protected:
   const PlatformRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
@@ -97,7 +98,7 @@ class PlatformPlant {
   // As simulate(), in these steps.
   template <typename S>
   void simulate_driven(const LegParams<S>& params, const Window& window, const SampleSteps& steps,
-                       const DrivesOf<S>& drives_of, const S* start, S* residual, const S* hidden, int knots) const;
+                       const DrivesOf<S>& drives_of, const S* start, S* residual, const Hidden<S>& hidden) const;
 
  private:
   // What the position sensors would have read in the window were they good, by what the parameters say of them.
@@ -153,17 +154,18 @@ S* PlatformPlant::readings(const PlatformRecord& record, int sample, const PathS
 
 template <typename S>
 void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, const S* start, S* residual,
-                             const S* hidden, int knots) const {
+                             const Hidden<S>& hidden) const {
   const PlatformRecord& record = of(window.record);
   const SampleSteps& steps = steps_[static_cast<std::size_t>(window.record)];
   const DrivesOf<S> recorded = [&](const LegMachines<S>& machines, const S& h) {
     const auto of_leg = [&](int i) {
       return std::make_unique<RecordedCommand<S>>(machines.leg[i], laws_, record.command[static_cast<std::size_t>(i)],
-                                                  record.hold, record.step, window.first, steps.most(), h);
+                                                  record.hold, record.step, window, steps.most(), h,
+                                                  hidden.ahead == nullptr ? nullptr : hidden.ahead + i * kJumps);
     };
     return LegDrives<S>{{of_leg(0), of_leg(1), of_leg(2)}};
   };
-  simulate_driven(params, window, steps, recorded, start, residual, hidden, knots);
+  simulate_driven(params, window, steps, recorded, start, residual, hidden);
 }
 
 // From the numbers of a window's initial state (kStart).
@@ -218,8 +220,8 @@ struct PistonStiffness {
 
 template <typename S>
 void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& window, const SampleSteps& steps,
-                                    const DrivesOf<S>& drives_of, const S* start, S* residual, const S* hidden,
-                                    int knots) const {
+                                    const DrivesOf<S>& drives_of, const S* start, S* residual,
+                                    const Hidden<S>& hidden) const {
   const PlatformRecord& record = of(window.record);
   const LegMachines<S> machines = machines_of(params, record.conditions);
   const Params<double> plain[3] = {plain_params(machines.leg[0]), plain_params(machines.leg[1]),
@@ -229,7 +231,7 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
                                 plain_params(machines.common), masses_, measured);
   const MeasuredPath<S>& path = path_with_slopes(*known, machines.common, masses_, measured);
   const S shortest(record.step / steps.most());
-  const HiddenInputs<S> pushes(hidden, knots, window.samples);
+  const HiddenInputs<S> pushes(hidden, window.samples);
 
   Pistons<S> state = pistons_at_start(machines, record, window.first, start);
   auto drives = drives_of(machines, shortest);
@@ -280,7 +282,7 @@ void PlatformPlant::simulate_driven(const LegParams<S>& params, const Window& wi
 // Compiled in platform_plant.cpp. What drives the valves is the same code at each scalar, here and in platform_loop.cpp.
 #define SMS_PLATFORM_IS_DRIVEN(S)                                                                         \
   template void PlatformPlant::simulate_driven<S>(const LegParams<S>&, const Window&, const SampleSteps&, \
-                                                  const DrivesOf<S>&, const S*, S*, const S*, int) const
+                                                  const DrivesOf<S>&, const S*, S*, const Hidden<S>&) const
 extern SMS_PLATFORM_IS_DRIVEN(double);
 extern SMS_PLATFORM_IS_DRIVEN(ParameterJet);
 extern SMS_PLANT_SIMULATES(PlatformPlant, double);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/command_jumps.hpp"
 #include "estimation/recorded_signal.hpp"
 #include "estimation/sample_steps.hpp"
 #include "sms/integrate_stiff.hpp"
@@ -21,10 +22,6 @@ enum class Hold : int {
   stepped    // straight, and held where it jumps: a controller that is faster than its logger
 };
 
-// A change between two samples is a jump where it is so many times the larger of the two beside it. Sampling theory: a sine
-// has such changes only above 0.21 of the sampling rate, where nothing straight between samples is a likeness of it.
-constexpr double kJump = 4.0;
-
 namespace detail {
 
 // The command at a time counted in samples; before the first and after the last it is held.
@@ -40,13 +37,6 @@ S command_at(const Eigen::VectorXd& command, const S& at) {
   }
   const Eigen::Index k = static_cast<Eigen::Index>(position);
   return S(command[k]) + (at - S(static_cast<double>(k))) * S(command[k + 1] - command[k]);
-}
-
-// Whether the command jumps between this sample and the next.
-inline bool jumps(const Eigen::VectorXd& command, Eigen::Index sample) {
-  const Eigen::Index last = command.size() - 1;
-  const auto change = [&](Eigen::Index k) { return k < 0 || k >= last ? 0.0 : std::fabs(command[k + 1] - command[k]); };
-  return change(sample) > kJump * std::max(change(sample - 1), change(sample + 1));
 }
 
 // A reading of a sensor at its truth, as its logger has it at a sample: late by what is left beside whole samples of its
@@ -76,13 +66,13 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
 //
 // A stepped command has its jump where the sample that shows it was taken: a controller acts on the set-point of its own
 // time, and what it computed is what is logged then. Straight from the sample before, the valve would move ahead of its
-// command by half a sampling period.
+// command by half a sampling period. Where it moved ahead all the same, its jumps say by how much.
 template <typename S>
 class RecordedVoltage {
  public:
   // The command has to last.
-  RecordedVoltage(const Eigen::VectorXd& command, Hold hold, const S& late)
-      : command_(command), hold_(hold), late_(late) {}
+  RecordedVoltage(const Eigen::VectorXd& command, Hold hold, const S& late, const CommandJumps<S>& jumps = {})
+      : command_(command), hold_(hold), late_(late), jumps_(hold == Hold::linear ? CommandJumps<S>{} : jumps) {}
 
   bool is_held() const { return hold_ == Hold::previous; }
 
@@ -96,6 +86,9 @@ class RecordedVoltage {
       mean_ = is_held() ? mean_from(from, pace)
               : jumps   ? mean_of_stepped(from, pace)
                         : mean_of_straight(from, pace.samples);
+      if (jumps_) {
+        mean_ += jumps_.mean(value_of(from), length_of(pace));
+      }
     }
     return averages_ || averaged;
   }
@@ -129,6 +122,9 @@ class RecordedVoltage {
     const Eigen::Index last = command_.size() - 1;
     return S(command_[std::min<Eigen::Index>(std::max(sample, 0), last)]);
   }
+  // In samples, of a step.
+  static double length_of(const Pace& pace) { return double(pace.samples) / pace.parts; }
+
   // Mean over the step that begins at `from`. A jump at its very beginning belongs to the step before, so that the slope
   // against a delay of zero is that towards a longer one.
   S mean_from(const S& from, const Pace& pace) const {
@@ -157,7 +153,7 @@ class RecordedVoltage {
   static int sample_before(const S& from) { return static_cast<int>(std::ceil(value_of(from) - 1e-9)) - 1; }
 
   bool jumps_within(const S& from, const Pace& pace) const {
-    const double end = value_of(from) + double(pace.samples) / pace.parts;
+    const double end = value_of(from) + length_of(pace);
     for (int k = sample_before(from); k < end - 1e-9; ++k) {
       if (detail::jumps(command_, k)) {
         return true;
@@ -168,7 +164,7 @@ class RecordedVoltage {
 
   // The same where it goes straight, and is held between samples that it jumps between.
   S mean_of_stepped(const S& from, const Pace& pace) const {
-    const double length = double(pace.samples) / pace.parts;
+    const double length = length_of(pace);
     const S end = from + S(length);
     S sum(0), begins = from;
     for (int k = sample_before(from); value_of(begins) < value_of(end); ++k) {
@@ -183,6 +179,7 @@ class RecordedVoltage {
   const Eigen::VectorXd& command_;
   Hold hold_;
   S late_;
+  CommandJumps<S> jumps_;
   S mean_{0};
   bool averages_ = false;
 };

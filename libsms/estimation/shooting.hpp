@@ -31,16 +31,19 @@
 //
 // A plant is a class with
 //   template <S> using Machine                          its parameters: Params<S>, or more than that (leg_params.hpp)
-//   template <S> void simulate(const Machine<S>&, const Window&, const S* start, S* residual) const
+//   template <S> void simulate(const Machine<S>&, const Window&, const S* start, S* residual, const Hidden<S>&) const
 //   int channels(record), start_scale(k)
+//   int kHidden, kCommands                              inputs of its equations; valves that are driven by a record
 //   int kStart, kFelt; bool feels_all(params, Window)   of the kStart numbers of the initial state the first kFelt leave a
 //                                                       trace in any machine, the others only in one that feels all
 //
 // A plant's problem is compiled once, in the plant's own file (shooting_search.hpp).
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "estimation/hidden_inputs.hpp"
 #include "estimation/jet.hpp"
 #include "estimation/problem.hpp"
 
@@ -122,6 +125,10 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // (rows x kHidden * knots), a window's rows belonging to its own knots.
   RowMatrix hidden(const Machine<double>& params, int knots) const;
 
+  // Against the time, s, by which the kJumps largest jumps of each command come ahead of the sample that shows them
+  // (command_jumps.hpp): (rows x Plant::kCommands * kJumps), in order of time; zeros where a window has fewer.
+  RowMatrix jumps(const Machine<double>& params) const;
+
  private:
   static constexpr int kStart = Plant::kStart;
   static constexpr int kWidth = ParameterJet::DIMENSION;
@@ -153,8 +160,11 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // Returns how the best initial state moves with each parameter (kStart x free).
   Eigen::MatrixXd differentiate(const Machine<double>& params, const std::vector<int>& free, const Window& w,
                                 const Shot& shot, RowMatrix* jacobian) const;
-  void differentiate_hidden(const Machine<double>& params, int knots, const Window& w, const Shot& shot,
-                            RowMatrix* out) const;
+  // Against `count` values that are hidden in each window, as a simulation takes them.
+  using HiddenOf = std::function<Hidden<ParameterJet>(const ParameterJet* values)>;
+  RowMatrix against_hidden(const Machine<double>& params, int count, const HiddenOf& as_hidden) const;
+  void differentiate_hidden(const Machine<double>& params, int count, const HiddenOf& as_hidden, const Window& w,
+                            const Shot& shot, RowMatrix* out) const;
 
   Plant plant_;
   WindowOptions options_;
@@ -175,4 +185,4 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
 
 // Of a plant and a scalar: what stands in the plant's header as `extern SMS_PLANT_SIMULATES(...)` and in its file without.
 #define SMS_PLANT_SIMULATES(Plant, S) \
-  template void Plant::simulate<S>(const Plant::Machine<S>&, const Window&, const S*, S*, const S*, int) const
+  template void Plant::simulate<S>(const Plant::Machine<S>&, const Window&, const S*, S*, const Hidden<S>&) const

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "estimation/command_jumps.hpp"
 #include "estimation/shooting.hpp"
 #include "estimation/start_projection.hpp"
 
@@ -117,11 +118,26 @@ void ShootingProblem<Plant>::settle(const Machine<double>& params) {
 
 template <typename Plant>
 RowMatrix ShootingProblem<Plant>::hidden(const Machine<double>& params, int knots) const {
-  RowMatrix out(rows_, Plant::kHidden * knots);
+  return against_hidden(params, Plant::kHidden * knots, [&](const ParameterJet* values) {
+    return Hidden<ParameterJet>{values, knots, nullptr};
+  });
+}
+
+template <typename Plant>
+RowMatrix ShootingProblem<Plant>::jumps(const Machine<double>& params) const {
+  return against_hidden(params, Plant::kCommands * kJumps, [](const ParameterJet* values) {
+    return Hidden<ParameterJet>{nullptr, 0, values};
+  });
+}
+
+template <typename Plant>
+RowMatrix ShootingProblem<Plant>::against_hidden(const Machine<double>& params, int count,
+                                                 const HiddenOf& as_hidden) const {
+  RowMatrix out(rows_, count);
   in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     Shot shot = shoot(params, begun(params, k), k);
     Simulated(*this, params, windows_[k]).find_slopes(&shot);
-    differentiate_hidden(params, knots, windows_[k], shot, &out);
+    differentiate_hidden(params, count, as_hidden, windows_[k], shot, &out);
   });
   return out;
 }
@@ -294,8 +310,8 @@ Eigen::MatrixXd ShootingProblem<Plant>::differentiate(const Machine<double>& par
 }
 
 template <typename Plant>
-void ShootingProblem<Plant>::differentiate_hidden(const Machine<double>& params, int knots, const Window& w,
-                                                  const Shot& shot, RowMatrix* out) const {
+void ShootingProblem<Plant>::differentiate_hidden(const Machine<double>& params, int count, const HiddenOf& as_hidden,
+                                                  const Window& w, const Shot& shot, RowMatrix* out) const {
   const StartProjection projection(shot.slopes, start_scales());
   std::vector<ParameterJet> jets(static_cast<std::size_t>(w.rows));
   Eigen::MatrixXd columns(w.rows, kWidth);
@@ -304,16 +320,15 @@ void ShootingProblem<Plant>::differentiate_hidden(const Machine<double>& params,
   for (int k = 0; k < kStart; ++k) {
     start[k] = ParameterJet(shot.start[k]);
   }
-  const int all = Plant::kHidden * knots;
-  std::vector<ParameterJet> push(static_cast<std::size_t>(all));
-  for (int first = 0; first < all; first += kWidth) {
-    const int width = std::min(kWidth, all - first);
-    std::fill(push.begin(), push.end(), ParameterJet(0.0));
-    ParameterJet* const of_these = push.data() + first;
+  std::vector<ParameterJet> values(static_cast<std::size_t>(count));
+  for (int first = 0; first < count; first += kWidth) {
+    const int width = std::min(kWidth, count - first);
+    std::fill(values.begin(), values.end(), ParameterJet(0.0));
+    ParameterJet* const of_these = values.data() + first;
     for (int k = 0; k < width; ++k) {
       of_these[k].v[k] = 1.0;
     }
-    plant_.simulate(plain, w, start, jets.data(), push.data(), knots);
+    plant_.simulate(plain, w, start, jets.data(), as_hidden(values.data()));
     columns_of(jets, &columns);
     projection.off(columns, width, w.row, first, out);
   }

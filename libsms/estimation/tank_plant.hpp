@@ -42,6 +42,7 @@ class TankPlant {
   using Machine = Params<S>;
   static constexpr int kStart = 4;  // p, T, p_R, T_tc
   static constexpr int kFelt = kStart;
+  static constexpr int kCommands = 1;
   static constexpr int kHidden = 2;  // mass flow into the tank, kg/s; pressure at the head of the supply line, Pa
 
   // std::invalid_argument for arrays of different lengths or numbers that are not finite; a reading may be NaN.
@@ -64,10 +65,10 @@ class TankPlant {
   // The whole state where a window begins, in the order of TankState.
   Eigen::VectorXd state(const Params<double>& params, const Window& window, const Eigen::VectorXd& start) const;
 
-  // residual: for each sample of the window, each channel. hidden: kHidden times knots values, or nullptr.
+  // residual: for each sample of the window, each channel.
   template <typename S>
-  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden = nullptr,
-                int knots = 0) const;
+  void simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
+                const Hidden<S>& hidden = {}) const;
 
  private:
   const TankPlantRecord& of(int record) const { return records_[static_cast<std::size_t>(record)]; }
@@ -128,8 +129,8 @@ TankState<S> TankPlant::begin(const Tank<S>& tank, const S* start, const Lag<S>&
 }
 
 template <typename S>
-void TankPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual, const S* hidden,
-                         int knots) const {
+void TankPlant::simulate(const Params<S>& params, const Window& window, const S* start, S* residual,
+                         const Hidden<S>& hidden) const {
   const TankPlantRecord& record = of(window.record);
   Tank<S> tank = tank_of(params, record);
   const Params<S>& p = tank.params;
@@ -137,8 +138,9 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   const bool droops = p.supply_line_resistance > S(0);
   const SampleSteps& steps = steps_[static_cast<std::size_t>(window.record)];
   const S shortest(record.step / steps.most());
-  const HiddenInputs<S> pushes(hidden, knots, window.samples);
-  RecordedVoltage<S> command(record.command, record.hold, delay_to_chamber(p) / S(record.step));
+  const HiddenInputs<S> pushes(hidden, window.samples);
+  RecordedVoltage<S> command(record.command, record.hold, delay_to_chamber(p) / S(record.step),
+                             {record.command, window.first, window.samples, record.step, hidden.ahead});
   TankState<S> state = begin(tank, start, command.spool(p, window.first, steps.most(), shortest));
 
   TankTerms<S> t{};

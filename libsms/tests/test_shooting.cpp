@@ -433,6 +433,104 @@ TEST_CASE("a stepped command: straight, and held until the sample that shows a j
   CHECK_FALSE(command.begin_step(5.0, {1, 1}));
 }
 
+TEST_CASE("a jump ahead of the sample that shows it adds its area to the step in which it comes") {
+  Eigen::VectorXd volts(7);
+  volts << 1.0, 1.1, 1.2, 5.0, 5.1, 5.2, 5.3;
+  constexpr double step = 5e-3, ahead[est::kJumps] = {1e-4};
+  const auto arriving = [&](est::Hold hold, double at, const est::Pace& pace, const double* early) {
+    est::RecordedVoltage<double> command(volts, hold, 0.0, {volts, 0, 7, step, early});
+    command.begin_step(at, pace);
+    return command.at(at);
+  };
+  const double area = 3.8 * ahead[0] / step;  // V, times samples
+  for (const est::Hold hold : {est::Hold::stepped, est::Hold::previous}) {
+    CHECK(arriving(hold, 2.9, {10, 1}, ahead) == doctest::Approx(1.2 + 10.0 * area));
+    CHECK(arriving(hold, 2.0, {1, 3}, ahead) == doctest::Approx(arriving(hold, 2.0, {1, 3}, nullptr) + area / 3.0));
+    for (const double at : {2.8, 3.0}) {
+      CHECK(arriving(hold, at, {10, 1}, ahead) == arriving(hold, at, {10, 1}, nullptr));
+    }
+  }
+  CHECK(arriving(est::Hold::linear, 2.0, {1, 3}, ahead) == arriving(est::Hold::linear, 2.0, {1, 3}, nullptr));
+}
+
+TEST_CASE("of a window's jumps the largest are taken, in order of time") {
+  constexpr int jumps = est::kJumps + 3, every = 4;
+  Eigen::VectorXd volts(every * (jumps + 1));
+  const auto size = [](int jump) { return 1.0 + (7 * jump) % jumps; };  // all different
+  double level = 5.0;
+  for (int k = 0; k < volts.size(); ++k) {
+    level += k > 0 && k % every == 0 ? size(k / every - 1) : 0.0;
+    volts[k] = level;
+  }
+  double ahead[est::kJumps];
+  std::fill(std::begin(ahead), std::end(ahead), 1.0);
+  const est::CommandJumps<double> found(volts, 0, static_cast<int>(volts.size()), 1.0, ahead);
+  for (int jump = 0; jump < jumps; ++jump) {
+    const double added = found.mean(every * (jump + 1) - 1.0, 1.0);
+    CHECK(added == (size(jump) > 3.0 ? size(jump) : 0.0));
+  }
+  for (int i = 0; i < est::kJumps; ++i) {
+    ahead[i] = i;
+  }
+  const est::CommandJumps<double> ordered(volts, 0, static_cast<int>(volts.size()), 1.0, ahead);
+  double next = 0.0;
+  for (int jump = 0; jump < jumps; ++jump) {
+    if (size(jump) > 3.0) {
+      CHECK(ordered.mean(every * (jump + 1) - 1.0, 1.0) == next * size(jump));
+      ++next;
+    }
+  }
+  CHECK_FALSE(est::CommandJumps<double>(volts, 0, every, 1.0, ahead));  // none within
+  CHECK_FALSE(est::CommandJumps<double>(volts, 0, 12, 1.0, nullptr));
+}
+
+TEST_CASE("the sensitivity to a jump's time is the change of a finer record whose command jumps earlier") {
+  using Jet = est::ParameterJet;
+  constexpr int samples = 80, finer = 25, jump_at = 15;
+  const sms::Params<double> p;
+  const double start[est::BenchPlant::kStart] = {0.2, 0.0, 2.6e5, 2.9e5, 4e5, 0.0};
+  const auto plant_of = [&](int parts, int earlier) {
+    Eigen::VectorXd volts(samples * parts);
+    for (int k = 0; k < volts.size(); ++k) {
+      volts[k] = k < jump_at * parts - earlier ? 5.4 : k < 40 * parts ? 6.3 : 4.6;
+    }
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(volts.size());
+    est::BenchRecord record{kStep / parts, volts, zero, zero, zero, {}, {}};
+    record.hold = est::Hold::previous;
+    return est::BenchPlant({record}, unit_noise, sms::published_laws(), 1e-3);
+  };
+  const auto fine = [&](int earlier) {
+    constexpr int all = samples * finer;
+    Eigen::VectorXd out(3 * all);
+    plant_of(finer, earlier).simulate(p, est::Window{0, 0, all, 0, 3 * all, {}}, start, out.data());
+    Eigen::MatrixXd kept(samples, 3);
+    for (int k = 0; k < samples; ++k) {
+      kept.row(k) = out.segment<3>(3 * k * finer).transpose();
+    }
+    return kept;
+  };
+  Jet ahead[est::kJumps], from[est::BenchPlant::kStart], readings[3 * samples];
+  std::fill(std::begin(ahead), std::end(ahead), Jet(0.0));
+  ahead[0].v[0] = 1.0;
+  ahead[1].v[1] = 1.0;
+  std::transform(std::begin(start), std::end(start), from, [](double value) { return Jet(value); });
+  plant_of(1, 0).simulate(sms::cast<Jet>(p), est::Window{0, 0, samples, 0, 3 * samples, {}}, from, readings,
+                          {nullptr, 0, ahead});
+  const Eigen::MatrixXd change = (fine(1) - fine(0)) * (finer / kStep);
+  for (int channel = 0; channel < 3; ++channel) {
+    Eigen::VectorXd slope(samples);
+    for (int k = 0; k < samples; ++k) {
+      slope[k] = readings[3 * k + channel].v[0];
+    }
+    CAPTURE(channel);
+    CHECK((change.col(channel) - slope).norm() < 0.1 * slope.norm());
+  }
+  for (int k = 0; k < samples; ++k) {
+    CHECK((std::fabs(readings[3 * k + 1].v[0]) > 0.0) == (k >= jump_at));
+    CHECK((std::fabs(readings[3 * k + 1].v[1]) > 0.0) == (k >= 40));
+  }
+}
+
 TEST_CASE("a command that only jumps: stepped is held, whatever the delay and the steps") {
   Eigen::VectorXd jumping(80);
   for (int k = 0; k < jumping.size(); ++k) {

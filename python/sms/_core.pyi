@@ -2811,6 +2811,10 @@ class BenchProblem(Problem):
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
+    def jumps(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
+        """
     def settle(self, params: Params) -> None:
         """
         Let later searches for initial states begin at the best ones of these parameters.
@@ -2837,6 +2841,10 @@ class BenchLoopProblem(Problem):
     def hidden(self, params: Params, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
+        """
+    def jumps(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
         """
     def settle(self, params: Params) -> None:
         """
@@ -2866,6 +2874,10 @@ class TankPlantProblem(Problem):
     def hidden(self, params: Params, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
+        """
+    def jumps(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
         """
     def settle(self, params: Params) -> None:
         """
@@ -3029,6 +3041,10 @@ class PlatformProblem:
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
+    def jumps(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
+        """
     def settle(self, params: LegParams) -> None:
         """
         Let later searches for initial states begin at the best ones of these parameters.
@@ -3058,6 +3074,10 @@ class PlatformLoopProblem:
     def hidden(self, params: LegParams, knots: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
+        """
+    def jumps(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
         """
     def settle(self, params: LegParams) -> None:
         """

@@ -27,16 +27,15 @@ class Drawn:
 
     inputs: Array
     windows: list[Any]
-    late: Array
-    """(rows, 1): with a delay, s."""
+    jumping: Array
+    """(rows, 1): with the time of a jump, s."""
 
     def hidden(self, params: _core.Params, knots: int) -> Array:
         assert knots == KNOTS
         return self.inputs
 
-    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]:
-        assert list(free) == ["command_delay"]
-        return np.zeros(len(self.late)), self.late
+    def jumps(self, params: _core.Params) -> Array:
+        return self.jumping
 
 
 def drawn(random: np.random.Generator) -> Drawn:
@@ -87,20 +86,20 @@ def test_the_sizes_of_the_inputs_are_found_and_that_of_one_that_is_not_there_goe
     assert np.mean(white**2) == pytest.approx(1.0, abs=0.3)
 
 
-def test_a_delay_of_the_commands_in_each_window_is_one_more_input() -> None:
-    random = draw("delays of commands")
+def test_the_times_of_a_command_s_jumps_are_one_more_input() -> None:
+    random = draw("times of jumps")
     problem = drawn(random)
     true = 10.0 ** random.uniform(-2.5, -1.5)
-    late = np.repeat(true * random.normal(size=WINDOWS), SAMPLES)
-    residual = residual_of(problem, (1.0, 0.0), random) + problem.late[:, 0] * late
+    ahead = np.repeat(true * random.normal(size=WINDOWS), SAMPLES)
+    residual = residual_of(problem, (1.0, 0.0), random) + problem.jumping[:, 0] * ahead
     plain = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
-    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual, delays=("command_delay",))
-    assert found.tau[-1] == pytest.approx(np.std(late), rel=0.5)
+    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual, switched=True)
+    assert found.tau[-1] == pytest.approx(np.std(ahead), rel=0.5)
     white = (one.whitener.whiten(residual) for one in (found, plain))
     left, left_by_equations_alone = (float(np.mean(w**2)) for w in white)
     assert left == pytest.approx(1.0, abs=0.3)
     assert left_by_equations_alone > 2.0
-    sized = Discrepancy.sized(problem, _core.Params(), found.tau, ("command_delay",))
+    sized = Discrepancy.sized(problem, _core.Params(), found.tau, True)
     assert sized.whitener.whiten(residual) == pytest.approx(
         replace(found, larger=1.0).whitener.whiten(residual)
     )
@@ -109,7 +108,7 @@ def test_a_delay_of_the_commands_in_each_window_is_one_more_input() -> None:
         _core.Params(),
         EQUATIONS,
         residual_of(problem, (1.0, 0.0), random),
-        delays=("command_delay",),
+        switched=True,
     )
     assert none.tau[-1] < 0.1 * found.tau[-1]
 

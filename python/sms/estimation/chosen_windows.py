@@ -78,6 +78,9 @@ class ChosenWindows:
         """(rows, hidden inputs x knots), as WindowProblem has them."""
         return self.problem.hidden(params, knots)[self._rows]
 
+    def jumps(self, params: _core.Params) -> Array:
+        return self.problem.jumps(params)[self._rows]
+
 
 def without_clipped(problem: WindowProblem, runs: Sequence[Run]) -> WindowProblem:
     """The problem without windows that clipped readings spoil; itself where there are none."""

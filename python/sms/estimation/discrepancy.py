@@ -7,8 +7,8 @@ residual of a window has the covariance
 
   V = I + H diag(tau^2) H'
 
-in units of the noise. One more input is the time at which a command came: what a logger has of a command that goes in
-steps tells to within its sampling period when the valve was switched, and each window has an error of its own of it.
+in units of the noise. One more input of each window are the times at which its command jumped: what a logger has of a
+controller that is faster tells to within its sampling period when the valve was switched (command_jumps.hpp).
 
 A window in which the piston hangs on a stop or breaks away asks for inputs far larger than the
 others do: they are larger there, and say little of tau (Student's t, variance_components.py). Generalised least squares
@@ -47,7 +47,7 @@ class Shot(Protocol):
 
     def hidden(self, params: _core.Params, knots: int) -> Array: ...
 
-    def evaluate(self, params: _core.Params, free: Sequence[str] = ()) -> tuple[Array, Array]: ...
+    def jumps(self, params: _core.Params) -> Array: ...
 
 
 @dataclass(frozen=True)
@@ -57,14 +57,14 @@ class Discrepancy:
     rows: tuple[slice, ...]
     """Of each window."""
     inputs: Array
-    """(rows, equations * KNOTS + delays): change of the residual with each input at each knot of its window, then with
-    each delay."""
+    """(rows, equations * KNOTS + jumps): change of the residual with each input at each knot of its window, then with
+    the time of each jump of its command."""
     products: Array
     """(windows, inputs, inputs): of the inputs with each other."""
     group: Index
-    """(inputs,): the equation whose input each is; the last group are the delays, if there are any."""
+    """(inputs,): the equation whose input each is; the last group are the jumps, if there are any."""
     tau: Array
-    """(groups,): standard deviation of each equation's input; of the delays, s."""
+    """(groups,): standard deviation of each equation's input; of the jumps' times, s."""
     larger: Array | float = 1.0
     """(windows, groups): by which factor it is larger in a window."""
     alike: bool = False
@@ -78,27 +78,27 @@ class Discrepancy:
         equations: int,
         residual: Array,
         alike: bool = False,
-        delays: Sequence[str] = (),
+        switched: bool = False,
     ) -> Discrepancy:
-        """As likely as can be for the residual (rows,) of a model with these parameters. delays: the parameters that
-        say how late commands come."""
-        groups = equations + (1 if delays else 0)
-        blank = replace(cls.sized(problem, params, np.zeros(groups), delays), alike=alike)
+        """As likely as can be for the residual (rows,) of a model with these parameters. switched: commands jump at
+        times that are not known."""
+        groups = equations + (1 if switched else 0)
+        blank = replace(cls.sized(problem, params, np.zeros(groups), switched), alike=alike)
         level = max(float(np.linalg.norm(residual)) / np.sqrt(len(blank.rows) * KNOTS), LEAST)
         return replace(blank, tau=blank.moving(level)).fitted_to(residual)
 
     @classmethod
     def sized(
-        cls, problem: Shot, params: _core.Params, tau: Array, delays: Sequence[str] = ()
+        cls, problem: Shot, params: _core.Params, tau: Array, switched: bool = False
     ) -> Discrepancy:
         """With standard deviations (groups,) that are known from elsewhere."""
         rows = tuple(slice(w.row, w.row + w.rows) for w in problem.windows)
         inputs = np.asarray(problem.hidden(params, KNOTS))
         group = np.repeat(np.arange(inputs.shape[1] // KNOTS), KNOTS)
-        if delays:
-            _, late = problem.evaluate(params, delays)
-            inputs = np.hstack([inputs, np.where(np.isfinite(late), late, 0.0)])
-            group = np.concatenate([group, np.full(len(delays), len(tau) - 1)])
+        if switched:
+            jumps = problem.jumps(params)
+            inputs = np.hstack([inputs, jumps])
+            group = np.concatenate([group, np.full(jumps.shape[1], len(tau) - 1)])
         products = np.array([inputs[r].T @ inputs[r] for r in rows])
         return cls(rows, inputs, products, group, np.asarray(tau))
 

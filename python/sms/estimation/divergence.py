@@ -69,6 +69,10 @@ class WithinNumbers:
         steepest = np.where(usual > 0.0, FARTHER_THAN_OTHERS * usual, np.inf)
         return self._flat_where_steep(inputs, np.minimum(steepest, np.finfo(float).max))
 
+    def jumps(self, params: _core.Params) -> Array:
+        """(rows, jumps), as WindowProblem has them; all of them finite."""
+        return np.nan_to_num(self.problem.jumps(params), nan=0.0, posinf=0.0, neginf=0.0)
+
     def _flat_where_steep(self, jacobian: Array, steepest: Array) -> Array:
         for w in self.windows:
             rows = slice(w.row, w.row + w.rows)

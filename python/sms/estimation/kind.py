@@ -61,8 +61,8 @@ class Kind:
     """Of every signal."""
     equations: Equations | None = None
     """None: the plant is known as a simulation only."""
-    delays: tuple[str, ...] = ()
-    """Parameters that say how late the recorded commands come, where no controller is simulated."""
+    switched: bool = False
+    """Recorded commands drive valves, and when they jumped between two samples is not known."""
     read_directly: Mapping[str, str] = field(default_factory=dict)
     """Block of the catalogue -> the signal that its equation gives without any other: an error of the flows or forces
     does not reach it."""

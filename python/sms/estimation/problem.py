@@ -67,3 +67,8 @@ class WindowProblem(Problem, Protocol):
     def hidden(self, params: _core.Params, knots: int) -> NDArray[np.float64]:
         """(rows, hidden inputs x knots): derivatives against hidden inputs, linear between knots in each window."""
         ...
+
+    def jumps(self, params: _core.Params) -> NDArray[np.float64]:
+        """(rows, jumps): derivatives against the times, s, by which jumps of the command come ahead of the sample that
+        shows them, in each window."""
+        ...

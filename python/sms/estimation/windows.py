@@ -108,12 +108,12 @@ class Runs:
     ) -> Discrepancy:
         """The random hidden inputs for which the residual (rows,) of these parameters is most likely; if `alike`, those
         that are equally large in all windows."""
-        equations, delays = len(self.kind.hidden), self.kind.delays
-        return Discrepancy.of(self.problem, params, equations, residual, alike, delays)
+        equations, switched = len(self.kind.hidden), self.kind.switched
+        return Discrepancy.of(self.problem, params, equations, residual, alike, switched)
 
     def discrepancy_of(self, params: _core.Params, tau: Array) -> Discrepancy:
         """Random hidden inputs of standard deviations (groups,) that other records told."""
-        return Discrepancy.sized(self.problem, params, tau, self.kind.delays)
+        return Discrepancy.sized(self.problem, params, tau, self.kind.switched)
 
     @cached_property
     def whole(self) -> Runs:

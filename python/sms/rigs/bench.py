@@ -249,6 +249,6 @@ BENCH = Kind(
     shown=("extension", "valve_command"),
     menu=MENU,
     equations=EQUATIONS,
-    delays=("command_delay",),
+    switched=True,
     read_directly=READ_DIRECTLY,
 )

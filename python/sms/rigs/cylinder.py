@@ -165,6 +165,10 @@ class Balance:
         """(rows, 0): what is not simulated has no unknown input."""
         return np.empty((self.rows, 0))
 
+    def jumps(self, params: _core.Params) -> Array:
+        """(rows, 0): nor commands."""
+        return np.empty((self.rows, 0))
+
 
 def strokes_of(motions: Sequence[Motion]) -> list[Stroke]:
     """The strokes of all runs, in the order of their rows."""

@@ -104,6 +104,11 @@ class Mixed:
         of_parts = [p.problem.hidden(params, knots) for p in self.parts]
         return self._together(of_parts, (self.inputs * knots,))
 
+    def jumps(self, params: _core.Params) -> Array:
+        """(rows, jumps), as WindowProblem has them."""
+        of_parts = [p.problem.jumps(params) for p in self.parts]
+        return self._together(of_parts, of_parts[0].shape[1:])
+
 
 def mixed(in_loop: Maker, commanded: Maker, computed: Sequence[str], inputs: int) -> Maker:
     """What makes the problem of any records: in_loop of those whose controller is simulated, commanded of the others.

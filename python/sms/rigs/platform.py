@@ -276,6 +276,6 @@ PLATFORM = Kind(
     shown=(*of_legs("extension", "valve_command"),),
     menu=MENU,
     equations=EQUATIONS,
-    delays=tuple(f"command_delay:{leg}" for leg in LEGS),
+    switched=True,
     read_directly=READ_DIRECTLY,
 )

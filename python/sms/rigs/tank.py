@@ -246,6 +246,6 @@ TANK = Kind(
     menu=MENU,
     equations=EQUATIONS,
     make_run=make_run,
-    delays=("command_delay",),
+    switched=True,
     read_directly=READ_DIRECTLY,
 )
