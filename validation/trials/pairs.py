@@ -138,7 +138,9 @@ def pairs(
         float, typer.Option(min=0.0, max=4.0, help="% by which machines are off from the model.")
     ] = 1.0,
     workers: Annotated[int, typer.Option(min=1)] = os.cpu_count() or 1,
-    as_json_file: Annotated[Path | None, typer.Option("--json", help="Also to this file.")] = None,
+    as_json_file: Annotated[
+        Path | None, typer.Option("--json", help="Also to this file, machine by machine.")
+    ] = None,
 ) -> None:
     """Machines on two days, diagnosed and compared: what is called changed. A tank takes half a minute."""
     if kind not in RIGS:
@@ -166,14 +168,17 @@ def pairs(
                         f"  {pair.before:g} to {pair.after:g} x: {pair.verdicts} {pair.changed}",
                         soft_wrap=True,
                     )
-    found.sort(key=lambda p: p.seed)
-    counted = shares(found)
-    console.print(share_table(counted))
-    if as_json_file is not None:
-        content: dict[str, Any] = {
-            "seed": first,
-            "imperfection": imperfect,
-            "pairs": [asdict(p) for p in found],
-            "shares": shares_as_dicts(counted),
-        }
-        write_text_atomically(as_json_file, json_text("trials", content))
+            if as_json_file is not None:
+                _write(as_json_file, first, imperfect, found)
+    console.print(share_table(shares(found)))
+
+
+def _write(file: Path, seed: int, imperfection: float, found: Sequence[Pair]) -> None:
+    """What is known so far, machine by machine: hours of trials that are stopped keep what they have."""
+    content: dict[str, Any] = {
+        "seed": seed,
+        "imperfection": imperfection,
+        "pairs": [asdict(p) for p in sorted(found, key=lambda p: p.seed)],
+        "shares": shares_as_dicts(shares(found)),
+    }
+    write_text_atomically(file, json_text("trials", content))
