@@ -150,16 +150,16 @@ class Rig:
         by how much the others' are larger."""
         ambient = 0.0 if self.kind == "cylinder" else self.declared("ambient_pressure").value
         at = {s: w.offset + (ambient if w.gauge else 0.0) for s, w in self.signals.items()}
-        of: dict[str, float] = {}
+        datums: dict[str, float] = {}
         for signal, value in at.items():
             name = f"sensor_datum_{without_leg(signal)}"
             if name not in PARAMETERS:
                 continue
-            common = of.setdefault(name, value)
+            common = datums.setdefault(name, value)
             if value != common:
-                of[f"{name}:{signal[-1]}"] = value - common
+                datums[f"{name}:{signal[-1]}"] = value - common
         # What is beyond is found where the readings are looked at.
-        return {n: v for n, v in of.items() if self.table[n].lower <= v <= self.table[n].upper}
+        return {n: v for n, v in datums.items() if self.table[n].lower <= v <= self.table[n].upper}
 
 
 def load_rig(path: str | os.PathLike[str]) -> Rig:
