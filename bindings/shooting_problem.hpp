@@ -171,7 +171,35 @@ auto bind_shooting_problem(py::module_& m, const char* name) {
           py::arg("params"),
           "(rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command "
           "come "
-          "ahead of the sample that shows them; zeros where there are fewer.");
+          "further ahead of the sample that shows them; zeros where there are fewer.")
+      .def(
+          "jump_samples",
+          [](const Problem& p) {
+            const Exclusive alone(&p);
+            return p.jump_samples();
+          },
+          "(windows, commands x 8): the samples of the record that show them; -1 where there are fewer.")
+      .def(
+          "set_ahead",
+          [](Problem& p, int record, int command, const Eigen::VectorXd& ahead) {
+            const Exclusive alone(&p);
+            if (record < 0 || record >= p.plant().records() || command < 0 || command >= Plant::kCommands) {
+              throw py::index_error("there is no command " + std::to_string(command) + " of a record " +
+                                    std::to_string(record));
+            }
+            if (ahead.size() != p.plant().samples(record)) {
+              throw py::value_error("ahead has " + std::to_string(ahead.size()) + " values; the record has " +
+                                    std::to_string(p.plant().samples(record)) + " samples");
+            }
+            const double step = p.plant().step(record);
+            if (!(ahead.array() >= 0.0 && ahead.array() <= step).all()) {
+              throw py::value_error("ahead: a jump comes from 0 to " + std::to_string(step) +
+                                    " s, a sampling period, ahead of the sample that shows it");
+            }
+            p.set_ahead(record, command, ahead);
+          },
+          py::arg("record"), py::arg("command"), py::arg("ahead"),
+          "ahead (samples,), s: by how much the jump that a sample shows came ahead of it. From now on that is known.");
   return problem;
 }
 

@@ -54,8 +54,8 @@ Eigen::VectorXd BenchPlant::state(const Params<double>& params, const Window& wi
   const BenchRecord& record = of(window.record);
   const Bench<double> bench = make_bench(in_run(params, record), laws_);
   const int parts = steps_[static_cast<std::size_t>(window.record)].most();
-  RecordedCommand<double> drive(bench.params, laws_, record.command, record.hold, record.step, window, parts,
-                                record.step / parts);
+  RecordedCommand<double> drive(bench.params, laws_, record.command, record.ahead, record.hold, record.step, window,
+                                parts, record.step / parts);
   const BenchState<double> state = begin(bench, window, start.data(), drive);
   return vector_of(state);
 }

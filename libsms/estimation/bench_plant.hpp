@@ -33,6 +33,7 @@ struct BenchRecord {
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
   Eigen::VectorXd setpoint = {};                   // m; of a loop that is simulated
   Hold hold = Hold::linear;                        // of the command, where that is the record's
+  Eigen::VectorXd ahead = {};                      // s: of its jumps (command_jumps.hpp); empty: not known
 };
 
 // Standard deviation of one sample.
@@ -64,6 +65,8 @@ class BenchPlant {
   int samples(int record) const { return static_cast<int>(of(record).extension.size()); }
   double step(int record) const { return of(record).step; }
   int channels(int record) const { return of(record).supply_pressure.size() > 0 ? 4 : 3; }
+  const Eigen::VectorXd& command(int record, int) const { return of(record).command; }
+  Eigen::VectorXd& ahead(int record, int) { return records_[static_cast<std::size_t>(record)].ahead; }
   Eigen::VectorXd guess(int record, int first) const;
   // Whether reservoir, seals or temperatures begin with something of their own.
   bool feels_all(const Params<double>& params, const Window& window) const;
@@ -143,8 +146,8 @@ void BenchPlant::simulate(const Params<S>& params, const Window& window, const S
   const BenchRecord& record = of(window.record);
   const SampleSteps& steps = steps_[static_cast<std::size_t>(window.record)];
   const DriveOf<S> recorded = [&](const Bench<S>& bench, const S& h) {
-    return std::make_unique<RecordedCommand<S>>(bench.params, bench.laws, record.command, record.hold, record.step,
-                                                window, steps.most(), h, hidden.ahead);
+    return std::make_unique<RecordedCommand<S>>(bench.params, bench.laws, record.command, record.ahead, record.hold,
+                                                record.step, window, steps.most(), h, hidden.further);
   };
   simulate_driven(params, window, steps, recorded, start, residual, hidden);
 }

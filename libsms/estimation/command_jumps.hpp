@@ -1,8 +1,9 @@
 // When a recorded command jumped, as far as the record tells: a controller that is faster than its logger switches the
 // valve anywhere in the sampling period before the sample that shows it.
 //
-// By how much a jump comes ahead of that sample is no parameter of the machine but an unknown of each jump. To first order
-// it adds the jump, for so long, to the integral of the command over the step in which it comes.
+// By how much a jump comes ahead of that sample is no parameter of the machine but an unknown of each jump, which the
+// readings tell (python/sms/estimation/jump_times.py). To first order a jump that comes earlier adds its size, for so long, to
+// the integral of the command over the step in which it comes.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,55 +37,74 @@ inline bool jumps(const Eigen::VectorXd& command, Eigen::Index sample) {
 
 }  // namespace detail
 
-// The largest jumps of a command within a window, and by how much each comes ahead of the sample that shows it.
+// The largest jumps of a command within a window, in order of time: the samples that show them. Returns how many.
+inline int largest_jumps(const Eigen::VectorXd& command, int first, int samples, int (&shown)[kJumps]) {
+  const auto size = [&](int sample) { return std::fabs(detail::change_after(command, sample - 1)); };
+  int count = 0;
+  for (int k = first + 1; k < first + samples; ++k) {
+    if (!detail::jumps(command, k - 1)) {
+      continue;
+    }
+    if (count < kJumps) {
+      shown[count++] = k;
+      continue;
+    }
+    int* const end = shown + count;
+    int* const least = std::min_element(shown, end, [&](int a, int b) { return size(a) < size(b); });
+    if (size(*least) < size(k)) {
+      std::copy(least + 1, end, least);
+      *(end - 1) = k;
+    }
+  }
+  return count;
+}
+
+// Of a command within a window, when it jumped: as far ahead of the samples that show it as is known of the record, and the
+// largest jumps by a little more.
 template <typename S>
 class CommandJumps {
  public:
   // None.
   CommandJumps() = default;
 
-  // ahead: s, kJumps values in order of time, or nullptr for none. record_step: s.
-  CommandJumps(const Eigen::VectorXd& command, int first, int samples, double record_step, const S* ahead) {
-    if (ahead == nullptr) {
+  // known: s, of each sample by how much the jump that it shows came ahead of it; empty: of none. further: s, of the largest
+  // jumps, kJumps values in order of time, or nullptr for nothing. record_step: s. Command and known have to last.
+  CommandJumps(const Eigen::VectorXd& command, const Eigen::VectorXd& known, int first, int samples, double record_step,
+               const S* further)
+      : known_(known.size() > 0 ? &known : nullptr), record_step_(record_step) {
+    if (further == nullptr) {
       return;
     }
-    const auto size = [&](int sample) { return std::fabs(detail::change_after(command, sample)); };
-    int found[kJumps];
-    for (int k = first; k + 1 < first + samples; ++k) {
-      if (!detail::jumps(command, k)) {
-        continue;
-      }
-      int* const end = found + count_;
-      if (count_ < kJumps) {
-        found[count_++] = k;
-        continue;
-      }
-      int* const least = std::min_element(found, end, [&](int a, int b) { return size(a) < size(b); });
-      if (size(*least) < size(k)) {
-        std::copy(least + 1, end, least);
-        *(end - 1) = k;
-      }
-    }
+    count_ = largest_jumps(command, first, samples, shown_);
     for (int i = 0; i < count_; ++i) {
-      shown_[i] = found[i] + 1;
-      added_[i] = S(detail::change_after(command, found[i]) / record_step) * ahead[i];
+      added_[i] = S(detail::change_after(command, shown_[i] - 1) / record_step) * further[i];
     }
   }
 
-  // V: what they add to the mean of the command over a step from `from`, of `length`; both in samples of the record.
+  // In samples: by how much what this one shows came ahead of it.
+  double ahead(int sample) const {
+    return known_ != nullptr && sample >= 0 && sample < known_->size() ? (*known_)[sample] / record_step_ : 0.0;
+  }
+
+  // V: what the further ones add to the mean of the command over a step from `from`, of `length`; both in samples of the
+  // record.
   S mean(double from, double length) const {
     S sum(0);
     for (int i = 0; i < count_; ++i) {
-      if (from + 1e-9 < shown_[i] && !(from + length + 1e-9 < shown_[i])) {
+      const double comes = shown_[i] - ahead(shown_[i]);
+      if (from + 1e-9 < comes && !(from + length + 1e-9 < comes)) {
         sum += added_[i];
       }
     }
     return sum * S(1.0 / length);
   }
 
-  explicit operator bool() const { return count_ > 0; }
+  bool known() const { return known_ != nullptr; }
+  bool further() const { return count_ > 0; }
 
  private:
+  const Eigen::VectorXd* known_ = nullptr;
+  double record_step_ = 0.0;  // s
   int count_ = 0;
   int shown_[kJumps] = {};  // by this sample
   S added_[kJumps] = {};    // V, times samples

@@ -12,7 +12,7 @@ template <typename S>
 struct Hidden {
   const S* inputs = nullptr;  // `knots` values of each of the plant's kHidden inputs, one input after the other
   int knots = 0;
-  const S* ahead = nullptr;  // s, of kJumps jumps of each of the plant's kCommands commands (command_jumps.hpp)
+  const S* further = nullptr;  // s, of kJumps jumps of each of the plant's kCommands commands (command_jumps.hpp)
 };
 
 template <typename S>

@@ -43,6 +43,7 @@ struct PlatformRecord {
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
   LegSignals setpoint = {};                        // m; of a loop that is simulated
   Hold hold = Hold::linear;                        // of the commands, where those are the record's
+  LegSignals ahead = {};                           // s: of their jumps (command_jumps.hpp); empty: not known
 };
 
 // Standard deviation of one sample.
@@ -77,6 +78,12 @@ class PlatformPlant {
   double step(int record) const { return of(record).step; }
   int channels(int record) const {
     return 9 + (of(record).supply_pressure.size() > 0 ? 1 : 0) + (of(record).roll.size() > 0 ? 2 : 0);
+  }
+  const Eigen::VectorXd& command(int record, int leg) const {
+    return of(record).command[static_cast<std::size_t>(leg)];
+  }
+  Eigen::VectorXd& ahead(int record, int leg) {
+    return records_[static_cast<std::size_t>(record)].ahead[static_cast<std::size_t>(leg)];
   }
   Eigen::VectorXd guess(int record, int first) const;
   // Whether reservoirs or seals begin with something of their own.
@@ -160,8 +167,9 @@ void PlatformPlant::simulate(const LegParams<S>& params, const Window& window, c
   const DrivesOf<S> recorded = [&](const LegMachines<S>& machines, const S& h) {
     const auto of_leg = [&](int i) {
       return std::make_unique<RecordedCommand<S>>(machines.leg[i], laws_, record.command[static_cast<std::size_t>(i)],
-                                                  record.hold, record.step, window, steps.most(), h,
-                                                  hidden.ahead == nullptr ? nullptr : hidden.ahead + i * kJumps);
+                                                  record.ahead[static_cast<std::size_t>(i)], record.hold, record.step,
+                                                  window, steps.most(), h,
+                                                  hidden.further == nullptr ? nullptr : hidden.further + i * kJumps);
     };
     return LegDrives<S>{{of_leg(0), of_leg(1), of_leg(2)}};
   };

@@ -66,7 +66,7 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
 //
 // A stepped command has its jump where the sample that shows it was taken: a controller acts on the set-point of its own
 // time, and what it computed is what is logged then. Straight from the sample before, the valve would move ahead of its
-// command by half a sampling period. Where it moved ahead all the same, its jumps say by how much.
+// command by half a sampling period. Where it moved ahead all the same, its jumps say by how much (command_jumps.hpp).
 template <typename S>
 class RecordedVoltage {
  public:
@@ -83,10 +83,10 @@ class RecordedVoltage {
     const bool jumps = hold_ == Hold::stepped && jumps_within(from, pace);
     averages_ = is_held() || jumps || pace.samples > 1;
     if (averages_) {
-      mean_ = is_held() ? mean_from(from, pace)
-              : jumps   ? mean_of_stepped(from, pace)
-                        : mean_of_straight(from, pace.samples);
-      if (jumps_) {
+      mean_ = is_held() && !jumps_.known() ? mean_from(from, pace)
+              : is_held() || jumps         ? mean_of_stepped(from, pace)
+                                           : mean_of_straight(from, pace.samples);
+      if (jumps_.further()) {
         mean_ += jumps_.mean(value_of(from), length_of(pace));
       }
     }
@@ -162,7 +162,20 @@ class RecordedVoltage {
     return false;
   }
 
-  // The same where it goes straight, and is held between samples that it jumps between.
+  // Within one sampling period, that after sample k, where the command is held until it jumps.
+  S mean_of_held(int k, const S& begins, const S& ends) const {
+    const double ahead = jumps_.ahead(k + 1);
+    const S jumps_at(k + 1.0 - ahead);
+    if (!(ahead > 0.0) || !(value_of(jumps_at) < value_of(ends))) {
+      return held(k);
+    }
+    if (!(value_of(begins) < value_of(jumps_at))) {
+      return held(k + 1);
+    }
+    return ((jumps_at - begins) * held(k) + (ends - jumps_at) * held(k + 1)) / (ends - begins);
+  }
+
+  // The same where it is held, or goes straight and is held between samples that it jumps between.
   S mean_of_stepped(const S& from, const Pace& pace) const {
     const double length = length_of(pace);
     const S end = from + S(length);
@@ -170,7 +183,8 @@ class RecordedVoltage {
     for (int k = sample_before(from); value_of(begins) < value_of(end); ++k) {
       const S ends = k + 1 < value_of(end) ? S(k + 1) : end;
       const S middle = S(0.5) * (begins + ends);
-      sum += (ends - begins) * (detail::jumps(command_, k) ? held(k) : detail::command_at<S>(command_, middle));
+      const bool is_straight = !is_held() && !detail::jumps(command_, k);
+      sum += (ends - begins) * (is_straight ? detail::command_at<S>(command_, middle) : mean_of_held(k, begins, ends));
       begins = ends;
     }
     return sum * S(1.0 / length);

@@ -28,14 +28,15 @@ class ValveDrive {
 template <typename S>
 class RecordedCommand final : public ValveDrive<S> {
  public:
-  // For a window from sample `first` on; the spool is run up in `parts` steps of h a sample. ahead: of its jumps, or
-  // nullptr. Parameters and command have to last.
-  RecordedCommand(const Params<S>& p, const ActuatorLaws& laws, const Eigen::VectorXd& command, Hold hold,
-                  double record_step, const Window& window, int parts, const S& h, const S* ahead = nullptr)
+  // For a window from sample `first` on; the spool is run up in `parts` steps of h a sample. further: as
+  // CommandJumps has it. Parameters, command and ahead have to last.
+  RecordedCommand(const Params<S>& p, const ActuatorLaws& laws, const Eigen::VectorXd& command,
+                  const Eigen::VectorXd& ahead, Hold hold, double record_step, const Window& window, int parts,
+                  const S& h, const S* further = nullptr)
       : p_(p),
         laws_(laws),
         voltage_(command, hold, delay_to_chamber(p) / S(record_step),
-                 {command, window.first, window.samples, record_step, ahead}),
+                 {command, ahead, window.first, window.samples, record_step, further}),
         first_(window.first),
         parts_(parts),
         h_(h) {}

@@ -125,9 +125,16 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // (rows x kHidden * knots), a window's rows belonging to its own knots.
   RowMatrix hidden(const Machine<double>& params, int knots) const;
 
-  // Against the time, s, by which the kJumps largest jumps of each command come ahead of the sample that shows them
+  // Against the time, s, by which the kJumps largest jumps of each command come further ahead of the sample that shows them
   // (command_jumps.hpp): (rows x Plant::kCommands * kJumps), in order of time; zeros where a window has fewer.
   RowMatrix jumps(const Machine<double>& params) const;
+
+  // The samples of the record that show them: (windows x Plant::kCommands * kJumps), -1 where there are fewer.
+  Eigen::MatrixXi jump_samples() const;
+
+  // From now on the jumps of a command are known to have come so far ahead of the samples that show them, s, a value a
+  // sample of the record.
+  void set_ahead(int record, int command, const Eigen::VectorXd& ahead);
 
  private:
   static constexpr int kStart = Plant::kStart;

@@ -131,6 +131,29 @@ RowMatrix ShootingProblem<Plant>::jumps(const Machine<double>& params) const {
 }
 
 template <typename Plant>
+Eigen::MatrixXi ShootingProblem<Plant>::jump_samples() const {
+  Eigen::MatrixXi out(windows_.size(), Plant::kCommands * kJumps);
+  out.setConstant(-1);
+  for (std::size_t k = 0; k < windows_.size(); ++k) {
+    const Window& w = windows_[k];
+    for (int command = 0; command < Plant::kCommands; ++command) {
+      int shown[kJumps];
+      const int count = largest_jumps(plant_.command(w.record, command), w.first, w.samples, shown);
+      for (int i = 0; i < count; ++i) {
+        out(static_cast<Eigen::Index>(k), command * kJumps + i) = shown[i];
+      }
+    }
+  }
+  return out;
+}
+
+template <typename Plant>
+void ShootingProblem<Plant>::set_ahead(int record, int command, const Eigen::VectorXd& ahead) {
+  plant_.ahead(record, command) = ahead;
+  std::fill(least_.begin(), least_.end(), std::numeric_limits<double>::infinity());  // of another residual
+}
+
+template <typename Plant>
 RowMatrix ShootingProblem<Plant>::against_hidden(const Machine<double>& params, int count,
                                                  const HiddenOf& as_hidden) const {
   RowMatrix out(rows_, count);

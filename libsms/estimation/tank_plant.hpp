@@ -27,6 +27,7 @@ struct TankPlantRecord {
   std::vector<std::pair<int, double>> conditions;  // ParamIndex, and by how much it is larger in this run
   Hold hold = Hold::linear;                        // of the command
   ValveLaw valve = ValveLaw::iso_0_4_mpa;          // measured at another supply, a tank follows another table
+  Eigen::VectorXd ahead = {};                      // s: of the command's jumps (command_jumps.hpp); empty: not known
 };
 
 // Standard deviation of one sample.
@@ -59,6 +60,8 @@ class TankPlant {
   int channels(int record) const {
     return 1 + (of(record).temperature.size() > 0 ? 1 : 0) + (of(record).supply_pressure.size() > 0 ? 1 : 0);
   }
+  const Eigen::VectorXd& command(int record, int) const { return of(record).command; }
+  Eigen::VectorXd& ahead(int record, int) { return records_[static_cast<std::size_t>(record)].ahead; }
   Eigen::VectorXd guess(int record, int first) const;
   static bool feels_all(const Params<double>&, const Window&) { return true; }
 
@@ -140,7 +143,7 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   const S shortest(record.step / steps.most());
   const HiddenInputs<S> pushes(hidden, window.samples);
   RecordedVoltage<S> command(record.command, record.hold, delay_to_chamber(p) / S(record.step),
-                             {record.command, window.first, window.samples, record.step, hidden.ahead});
+                             {record.command, record.ahead, window.first, window.samples, record.step, hidden.further});
   TankState<S> state = begin(tank, start, command.spool(p, window.first, steps.most(), shortest));
 
   TankTerms<S> t{};

@@ -433,24 +433,40 @@ TEST_CASE("a stepped command: straight, and held until the sample that shows a j
   CHECK_FALSE(command.begin_step(5.0, {1, 1}));
 }
 
-TEST_CASE("a jump ahead of the sample that shows it adds its area to the step in which it comes") {
-  Eigen::VectorXd volts(7);
+TEST_CASE("a jump further ahead of the sample that shows it adds its area to the step in which it comes") {
+  Eigen::VectorXd volts(7), known = Eigen::VectorXd::Zero(7);
   volts << 1.0, 1.1, 1.2, 5.0, 5.1, 5.2, 5.3;
-  constexpr double step = 5e-3, ahead[est::kJumps] = {1e-4};
-  const auto arriving = [&](est::Hold hold, double at, const est::Pace& pace, const double* early) {
-    est::RecordedVoltage<double> command(volts, hold, 0.0, {volts, 0, 7, step, early});
+  constexpr double step = 5e-3, further[est::kJumps] = {1e-4};
+  const Eigen::VectorXd none;
+  const auto arriving = [&](est::Hold hold, double at, const est::Pace& pace, const Eigen::VectorXd& ahead,
+                            const double* more) {
+    est::RecordedVoltage<double> command(volts, hold, 0.0, {volts, ahead, 0, 7, step, more});
     command.begin_step(at, pace);
     return command.at(at);
   };
-  const double area = 3.8 * ahead[0] / step;  // V, times samples
+  const double area = 3.8 * further[0] / step;  // V, times samples
   for (const est::Hold hold : {est::Hold::stepped, est::Hold::previous}) {
-    CHECK(arriving(hold, 2.9, {10, 1}, ahead) == doctest::Approx(1.2 + 10.0 * area));
-    CHECK(arriving(hold, 2.0, {1, 3}, ahead) == doctest::Approx(arriving(hold, 2.0, {1, 3}, nullptr) + area / 3.0));
+    const double without = arriving(hold, 2.0, {1, 3}, none, nullptr);
+    CHECK(arriving(hold, 2.9, {10, 1}, none, further) == doctest::Approx(1.2 + 10.0 * area));
+    CHECK(arriving(hold, 2.0, {1, 3}, none, further) == doctest::Approx(without + area / 3.0));
     for (const double at : {2.8, 3.0}) {
-      CHECK(arriving(hold, at, {10, 1}, ahead) == arriving(hold, at, {10, 1}, nullptr));
+      CHECK(same_bits(arriving(hold, at, {10, 1}, none, further), arriving(hold, at, {10, 1}, none, nullptr)));
+    }
+    // Known to come 0.42 samples ahead: in the step from 2.5.
+    known[3] = 0.42 * step;
+    CHECK(arriving(hold, 2.4, {10, 1}, known, nullptr) == doctest::Approx(1.2));
+    CHECK(arriving(hold, 2.5, {10, 1}, known, nullptr) == doctest::Approx(0.8 * 1.2 + 0.2 * 5.0));
+    CHECK(arriving(hold, 2.6, {10, 1}, known, nullptr) == doctest::Approx(5.0));
+    CHECK(arriving(hold, 2.0, {1, 3}, known, nullptr) == doctest::Approx(without + 0.42 * 3.8 / 3.0));
+    CHECK(arriving(hold, 2.5, {10, 1}, known, further) == doctest::Approx(0.8 * 1.2 + 0.2 * 5.0 + 10.0 * area));
+    known[3] = 0.0;
+    for (double at = 1.0; at < 5.0; at += 0.3) {
+      CHECK(arriving(hold, at, {10, 1}, known, nullptr) == doctest::Approx(arriving(hold, at, {10, 1}, none, nullptr)));
     }
   }
-  CHECK(arriving(est::Hold::linear, 2.0, {1, 3}, ahead) == arriving(est::Hold::linear, 2.0, {1, 3}, nullptr));
+  known[3] = 0.42 * step;
+  CHECK(same_bits(arriving(est::Hold::linear, 2.0, {1, 3}, known, further),
+                  arriving(est::Hold::linear, 2.0, {1, 3}, none, nullptr)));
 }
 
 TEST_CASE("of a window's jumps the largest are taken, in order of time") {
@@ -462,26 +478,27 @@ TEST_CASE("of a window's jumps the largest are taken, in order of time") {
     level += k > 0 && k % every == 0 ? size(k / every - 1) : 0.0;
     volts[k] = level;
   }
-  double ahead[est::kJumps];
-  std::fill(std::begin(ahead), std::end(ahead), 1.0);
-  const est::CommandJumps<double> found(volts, 0, static_cast<int>(volts.size()), 1.0, ahead);
+  const Eigen::VectorXd none;
+  double further[est::kJumps];
+  std::fill(std::begin(further), std::end(further), 1.0);
+  const est::CommandJumps<double> found(volts, none, 0, static_cast<int>(volts.size()), 1.0, further);
   for (int jump = 0; jump < jumps; ++jump) {
     const double added = found.mean(every * (jump + 1) - 1.0, 1.0);
-    CHECK(added == (size(jump) > 3.0 ? size(jump) : 0.0));
+    CHECK(added == doctest::Approx(size(jump) > 3.0 ? size(jump) : 0.0));
   }
   for (int i = 0; i < est::kJumps; ++i) {
-    ahead[i] = i;
+    further[i] = i;
   }
-  const est::CommandJumps<double> ordered(volts, 0, static_cast<int>(volts.size()), 1.0, ahead);
+  const est::CommandJumps<double> ordered(volts, none, 0, static_cast<int>(volts.size()), 1.0, further);
   double next = 0.0;
   for (int jump = 0; jump < jumps; ++jump) {
     if (size(jump) > 3.0) {
-      CHECK(ordered.mean(every * (jump + 1) - 1.0, 1.0) == next * size(jump));
+      CHECK(ordered.mean(every * (jump + 1) - 1.0, 1.0) == doctest::Approx(next * size(jump)));
       ++next;
     }
   }
-  CHECK_FALSE(est::CommandJumps<double>(volts, 0, every, 1.0, ahead));  // none within
-  CHECK_FALSE(est::CommandJumps<double>(volts, 0, 12, 1.0, nullptr));
+  CHECK_FALSE(est::CommandJumps<double>(volts, none, 0, every, 1.0, further).further());  // none within
+  CHECK_FALSE(est::CommandJumps<double>(volts, none, 0, 12, 1.0, nullptr).further());
 }
 
 TEST_CASE("the sensitivity to a jump's time is the change of a finer record whose command jumps earlier") {
@@ -489,7 +506,7 @@ TEST_CASE("the sensitivity to a jump's time is the change of a finer record whos
   constexpr int samples = 80, finer = 25, jump_at = 15;
   const sms::Params<double> p;
   const double start[est::BenchPlant::kStart] = {0.2, 0.0, 2.6e5, 2.9e5, 4e5, 0.0};
-  const auto plant_of = [&](int parts, int earlier) {
+  const auto plant_of = [&](int parts, int earlier, double ahead = 0.0) {
     Eigen::VectorXd volts(samples * parts);
     for (int k = 0; k < volts.size(); ++k) {
       volts[k] = k < jump_at * parts - earlier ? 5.4 : k < 40 * parts ? 6.3 : 4.6;
@@ -497,7 +514,12 @@ TEST_CASE("the sensitivity to a jump's time is the change of a finer record whos
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(volts.size());
     est::BenchRecord record{kStep / parts, volts, zero, zero, zero, {}, {}};
     record.hold = est::Hold::previous;
-    return est::BenchPlant({record}, unit_noise, sms::published_laws(), 1e-3);
+    est::BenchPlant plant({record}, unit_noise, sms::published_laws(), 1e-3);
+    if (ahead > 0.0) {
+      plant.ahead(0, 0) = Eigen::VectorXd::Zero(volts.size());
+      plant.ahead(0, 0)[jump_at] = ahead;
+    }
+    return plant;
   };
   const auto fine = [&](int earlier) {
     constexpr int all = samples * finer;
@@ -524,6 +546,20 @@ TEST_CASE("the sensitivity to a jump's time is the change of a finer record whos
     }
     CAPTURE(channel);
     CHECK((change.col(channel) - slope).norm() < 0.1 * slope.norm());
+  }
+  // By three and a half milliseconds, known: as the finer record has it, far closer than the change itself.
+  const int earlier = 17 * finer / 25 + 1;  // 3.6 ms
+  Eigen::VectorXd coarse(3 * samples);
+  plant_of(1, 0, earlier * kStep / finer)
+      .simulate(p, est::Window{0, 0, samples, 0, 3 * samples, {}}, start, coarse.data());
+  const Eigen::MatrixXd known = Eigen::Map<est::RowMatrix>(coarse.data(), samples, 3);
+  plant_of(1, 0).simulate(p, est::Window{0, 0, samples, 0, 3 * samples, {}}, start, coarse.data());
+  const Eigen::MatrixXd unknown = Eigen::Map<est::RowMatrix>(coarse.data(), samples, 3);
+  const Eigen::MatrixXd true_one = fine(earlier), at_sample = fine(0);
+  for (int channel = 0; channel < 3; ++channel) {
+    CAPTURE(channel);
+    const double change_of = (true_one - at_sample).col(channel).norm();
+    CHECK(((known - unknown) - (true_one - at_sample)).col(channel).norm() < 0.05 * change_of);
   }
   for (int k = 0; k < samples; ++k) {
     CHECK((std::fabs(readings[3 * k + 1].v[0]) > 0.0) == (k >= jump_at));

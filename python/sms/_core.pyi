@@ -2811,9 +2811,17 @@ class BenchProblem(Problem):
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
+    def jump_samples(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, n]"]:
+        """
+        (windows, commands x 8): the samples of the record that show them; -1 where there are fewer.
+        """
     def jumps(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come further ahead of the sample that shows them; zeros where there are fewer.
+        """
+    def set_ahead(self, record: typing.SupportsInt | typing.SupportsIndex, command: typing.SupportsInt | typing.SupportsIndex, ahead: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        """
+        ahead (samples,), s: by how much the jump that a sample shows came ahead of it. From now on that is known.
         """
     def settle(self, params: Params) -> None:
         """
@@ -2842,9 +2850,17 @@ class BenchLoopProblem(Problem):
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
+    def jump_samples(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, n]"]:
+        """
+        (windows, commands x 8): the samples of the record that show them; -1 where there are fewer.
+        """
     def jumps(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come further ahead of the sample that shows them; zeros where there are fewer.
+        """
+    def set_ahead(self, record: typing.SupportsInt | typing.SupportsIndex, command: typing.SupportsInt | typing.SupportsIndex, ahead: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        """
+        ahead (samples,), s: by how much the jump that a sample shows came ahead of it. From now on that is known.
         """
     def settle(self, params: Params) -> None:
         """
@@ -2875,9 +2891,17 @@ class TankPlantProblem(Problem):
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
+    def jump_samples(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, n]"]:
+        """
+        (windows, commands x 8): the samples of the record that show them; -1 where there are fewer.
+        """
     def jumps(self, params: Params) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come further ahead of the sample that shows them; zeros where there are fewer.
+        """
+    def set_ahead(self, record: typing.SupportsInt | typing.SupportsIndex, command: typing.SupportsInt | typing.SupportsIndex, ahead: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        """
+        ahead (samples,), s: by how much the jump that a sample shows came ahead of it. From now on that is known.
         """
     def settle(self, params: Params) -> None:
         """
@@ -3041,9 +3065,17 @@ class PlatformProblem:
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
+    def jump_samples(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, n]"]:
+        """
+        (windows, commands x 8): the samples of the record that show them; -1 where there are fewer.
+        """
     def jumps(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come further ahead of the sample that shows them; zeros where there are fewer.
+        """
+    def set_ahead(self, record: typing.SupportsInt | typing.SupportsIndex, command: typing.SupportsInt | typing.SupportsIndex, ahead: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        """
+        ahead (samples,), s: by how much the jump that a sample shows came ahead of it. From now on that is known.
         """
     def settle(self, params: LegParams) -> None:
         """
@@ -3075,9 +3107,17 @@ class PlatformLoopProblem:
         """
         (rows, inputs x knots): derivatives against inputs that are hidden in the equations, in each window.
         """
+    def jump_samples(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, n]"]:
+        """
+        (windows, commands x 8): the samples of the record that show them; -1 where there are fewer.
+        """
     def jumps(self, params: LegParams) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come ahead of the sample that shows them; zeros where there are fewer.
+        (rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command come further ahead of the sample that shows them; zeros where there are fewer.
+        """
+    def set_ahead(self, record: typing.SupportsInt | typing.SupportsIndex, command: typing.SupportsInt | typing.SupportsIndex, ahead: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        """
+        ahead (samples,), s: by how much the jump that a sample shows came ahead of it. From now on that is known.
         """
     def settle(self, params: LegParams) -> None:
         """

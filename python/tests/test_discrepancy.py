@@ -40,7 +40,7 @@ class Drawn:
 
 def drawn(random: np.random.Generator) -> Drawn:
     rows = WINDOWS * SAMPLES
-    windows = [SimpleNamespace(row=k * SAMPLES, rows=SAMPLES) for k in range(WINDOWS)]
+    windows = [SimpleNamespace(record=0, row=k * SAMPLES, rows=SAMPLES) for k in range(WINDOWS)]
     smooth = np.cumsum(random.normal(size=(rows, EQUATIONS * KNOTS)), axis=0)
     return Drawn(smooth / np.sqrt(SAMPLES), windows, random.normal(0.0, 1e3, size=(rows, 1)))
 
@@ -86,31 +86,41 @@ def test_the_sizes_of_the_inputs_are_found_and_that_of_one_that_is_not_there_goe
     assert np.mean(white**2) == pytest.approx(1.0, abs=0.3)
 
 
-def test_the_times_of_a_command_s_jumps_are_one_more_input() -> None:
+def test_the_times_of_a_command_s_jumps_are_one_more_input_of_known_size() -> None:
     random = draw("times of jumps")
     problem = drawn(random)
-    true = 10.0 ** random.uniform(-2.5, -1.5)
-    ahead = np.repeat(true * random.normal(size=WINDOWS), SAMPLES)
+    deviation = 10.0 ** random.uniform(-2.5, -1.5)
+    ahead = np.repeat(deviation * random.normal(size=WINDOWS), SAMPLES)
     residual = residual_of(problem, (1.0, 0.0), random) + problem.jumping[:, 0] * ahead
     plain = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual)
-    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual, switched=True)
-    assert found.tau[-1] == pytest.approx(np.std(ahead), rel=0.5)
+    found = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual, jumping=(deviation,))
+    assert found.tau[-1] == 1.0
+    assert np.all(np.broadcast_to(found.larger, (WINDOWS, EQUATIONS + 1))[:, -1] == 1.0)
+    assert found.tau[0] == pytest.approx(1.0, rel=0.4)
     white = (one.whitener.whiten(residual) for one in (found, plain))
     left, left_by_equations_alone = (float(np.mean(w**2)) for w in white)
     assert left == pytest.approx(1.0, abs=0.3)
     assert left_by_equations_alone > 2.0
-    sized = Discrepancy.sized(problem, _core.Params(), found.tau, True)
+    sized = Discrepancy.sized(problem, _core.Params(), found.tau, (deviation,))
     assert sized.whitener.whiten(residual) == pytest.approx(
         replace(found, larger=1.0).whitener.whiten(residual)
     )
-    none = Discrepancy.of(
-        problem,
-        _core.Params(),
-        EQUATIONS,
-        residual_of(problem, (1.0, 0.0), random),
-        switched=True,
-    )
-    assert none.tau[-1] < 0.1 * found.tau[-1]
+
+
+def test_the_expected_inputs_are_those_that_were_there_wherever_the_simulation_has_them() -> None:
+    random = draw("expected inputs")
+    problem = drawn(random)
+    problem.jumping[:] *= 100.0  # told to a hundredth of its deviation, and better
+    ahead = 1e-2 * random.normal(size=WINDOWS)
+    moved = problem.jumping[:, 0] * np.repeat(ahead, SAMPLES)
+    noise = residual_of(problem, (1.0, 0.0), random)
+    sized = Discrepancy.sized(problem, _core.Params(), np.array([1.0, 0.0, 1.0]), (1e-2,))
+    found = sized.expected(noise - moved)
+    assert 1e-2 * found[:, -1] == pytest.approx(ahead, abs=1e-3)
+    at = np.zeros(found.shape)
+    at[:, -1] = random.normal(size=WINDOWS)
+    there = problem.jumping[:, 0] * np.repeat(1e-2 * at[:, -1], SAMPLES)
+    assert sized.expected(noise - moved + there, at) == pytest.approx(found, abs=1e-6)
 
 
 def standard_error_at_nothing(problem: Drawn, first: float) -> float:

@@ -240,6 +240,27 @@ def test_of_nothing_a_cause_takes_no_share() -> None:
     assert not refused(identify=0.0, validate=0.1)  # of so little neither says more than the other
 
 
+def test_the_end_of_what_shapes_an_effect_is_nothing_against_its_size() -> None:
+    """A tube without loss is a tube."""
+    table = {"length": "m", "loss": "1"}
+    entry = {n: SimpleNamespace(unit=unit, upper=20.0) for n, unit in table.items()}
+    data = cast(Any, SimpleNamespace(rig=SimpleNamespace(table=entry)))
+
+    def objection(sizes: int | None, **values: float) -> str:
+        free = [name for name, value in values.items() if 0.0 < value < 20.0]
+        start = {"length": 0.0, "loss": 1.0}
+        fitted = SimpleNamespace(
+            params=values, movable=free, hypothesis=SimpleNamespace(start=start)
+        )
+        effect = SimpleNamespace(parameters=("length", "loss"), sizes=sizes)
+        return judgement.implausible(cast(Any, effect), cast(Any, fitted), data)
+
+    assert objection(1, length=3.0, loss=0.5) == ""
+    assert objection(1, length=3.0, loss=0.0) == ""
+    assert objection(1, length=20.0, loss=0.5).startswith("fits best at or beyond 20")
+    assert objection(None, length=3.0, loss=0.0).startswith("fits best at or beyond 0")
+
+
 def test_what_ends_up_within_what_is_declared_or_at_its_end_is_no_cause(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

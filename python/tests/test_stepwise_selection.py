@@ -300,11 +300,16 @@ def test_a_logger_as_fast_as_the_controller_has_every_command(tmp_path: Path) ->
     rig = replace(rig, signals={**rig.signals, "valve_command": said})
     command = {"valve_command": 5.0 + np.sin(np.linspace(0.0, 6.0, 200))}
     period = rig.declared("control_period").value
-    assert hold_of(rig, command, period) == hold_of(rig, command, 1.005 * period) == "previous"
-    assert hold_of(rig, command, 5.0 * period) == hold_of(rig, command, 0.5 * period) == "stepped"
+    assert hold_of(rig, command, period) == hold_of(rig, command, 1.005 * period)
+    assert hold_of(rig, command, period) == ("previous", 0.0)
+    for step in (0.5 * period, 5.0 * period):
+        assert hold_of(rig, command, step) == ("stepped", pytest.approx(step / 12.0**0.5))
     slower = replace(rig.declared("control_period"), value=5.0 * period)
-    rig = replace(rig, parameters={**rig.parameters, "control_period": slower})
-    assert hold_of(rig, command, 5.0 * period) == "previous"
+    at_5_ms = replace(rig, parameters={**rig.parameters, "control_period": slower})
+    assert hold_of(at_5_ms, command, 5.0 * period) == ("previous", 0.0)
+    for hold in ("previous", "linear"):
+        told = replace(rig, signals={**rig.signals, "valve_command": replace(said, hold=hold)})
+        assert hold_of(told, command, 5.0 * period) == (hold, 0.0)
 
 
 def test_an_answer_is_right_only_with_every_hidden_effect_and_nothing_else() -> None:

@@ -21,6 +21,7 @@ from sms.estimation.block_statistics import (
     project_off,
 )
 from sms.estimation.discrepancy import Discrepancy
+from sms.estimation.jump_times import with_jump_times
 from sms.estimation.least_squares import MOST_STEPS, Free, Solution, WindowFit
 from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
@@ -173,6 +174,14 @@ class Data:
     def as_declared(self) -> Data:
         """The same without what reference records told."""
         return replace(self, healthy=None, unseen_of={}, refitted_of={})
+
+    def timed(self, params: _core.Params) -> Data:
+        """The same with recorded commands that jump when the readings of a machine with these parameters say."""
+        identify, validate = (with_jump_times(r, params) for r in (self.identify, self.validate))
+        test = None if self.test is None else with_jump_times(self.test, params)
+        return replace(
+            self, identify=identify, validate=validate, test=test, unseen_of={}, refitted_of={}
+        )
 
     def allowed(self, runs: Runs) -> Discrepancy | None:
         """The healthy machine's own discrepancy on the records of a role; None where none told."""

@@ -18,6 +18,7 @@ from sms.diagnosis.hypothesis import (
     weights_of,
 )
 from sms.estimation.block_statistics import covariance_from, scatter_of_scores
+from sms.estimation.jump_times import with_jump_times
 from sms.estimation.nuisance import Joint
 from sms.estimation.windows import Runs
 
@@ -39,7 +40,8 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     scatter between blocks is (`Healthy.inflation`); a number's change from day to day is added.
     """
     assert data.reference is not None
-    h, runs = hypothesis, data.reference
+    h = hypothesis
+    runs = with_jump_times(data.reference, _fitted_when_well(h, data.reference).params)
     fitted = _fitted_when_well(h, runs)
     jacobian = fitted.whiten(fitted.fit.jacobian)
     residual = fitted.whiten(fitted.fit.residual)
@@ -61,6 +63,7 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
         free[name] = max(h.table[name].lower, low), min(h.table[name].upper, high)
     known = h.known | deviation
     machine = replace(h, start=start, free=free, known=known, joint=joint, inflation=inflation)
+    data = replace(data, reference=runs).timed(fitted.params)
     return machine, replace(data, healthy=_healthy(fitted, residual, data, inflation))
 
 

@@ -116,6 +116,8 @@ def investigate(
     declared = hypothesis = baseline_hypothesis(data, effects)
     if data.reference is not None:
         hypothesis, data = from_reference(hypothesis, data)
+    else:
+        data = data.timed(fit(hypothesis, data.identify).params)
     baseline = fit(hypothesis, data.identify, discrepancy=data.allowed(data.identify))
     progress("looking which effects can be seen", 0.15)
     able, blind = identifiable(baseline, data, effects)

@@ -8,7 +8,8 @@ residual of a window has the covariance
   V = I + H diag(tau^2) H'
 
 in units of the noise. One more input of each window are the times at which its command jumped: what a logger has of a
-controller that is faster tells to within its sampling period when the valve was switched (command_jumps.hpp).
+controller that is faster tells to within its sampling period when the valve was switched (command_jumps.hpp), and so
+large they are.
 
 A window in which the piston hangs on a stop or breaks away asks for inputs far larger than the
 others do: they are larger there, and say little of tau (Student's t, variance_components.py). Generalised least squares
@@ -25,6 +26,7 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sms import _core
 from sms.arrays import Array, Index
@@ -58,13 +60,15 @@ class Discrepancy:
     """Of each window."""
     inputs: Array
     """(rows, equations * KNOTS + jumps): change of the residual with each input at each knot of its window, then with
-    the time of each jump of its command."""
+    the time of each jump of its command, in standard deviations."""
     products: Array
     """(windows, inputs, inputs): of the inputs with each other."""
     group: Index
     """(inputs,): the equation whose input each is; the last group are the jumps, if there are any."""
     tau: Array
-    """(groups,): standard deviation of each equation's input; of the jumps' times, s."""
+    """(groups,): standard deviation of each equation's input; of the jumps' times, 1."""
+    known: NDArray[np.bool_]
+    """(groups,): of which that is known; the others are as the data have it."""
     larger: Array | float = 1.0
     """(windows, groups): by which factor it is larger in a window."""
     alike: bool = False
@@ -78,29 +82,35 @@ class Discrepancy:
         equations: int,
         residual: Array,
         alike: bool = False,
-        switched: bool = False,
+        jumping: Sequence[float] = (),
     ) -> Discrepancy:
-        """As likely as can be for the residual (rows,) of a model with these parameters. switched: commands jump at
-        times that are not known."""
-        groups = equations + (1 if switched else 0)
-        blank = replace(cls.sized(problem, params, np.zeros(groups), switched), alike=alike)
+        """As likely as can be for the residual (rows,) of a model with these parameters. jumping: how nearly it is
+        known of each record when its commands jumped, s; empty where there are none."""
+        groups = equations + (1 if jumping else 0)
+        blank = replace(cls.sized(problem, params, np.zeros(groups), jumping), alike=alike)
         level = max(float(np.linalg.norm(residual)) / np.sqrt(len(blank.rows) * KNOTS), LEAST)
-        return replace(blank, tau=blank.moving(level)).fitted_to(residual)
+        start = np.where(blank.known, blank.tau, blank.moving(level))
+        return replace(blank, tau=start).fitted_to(residual)
 
     @classmethod
     def sized(
-        cls, problem: Shot, params: _core.Params, tau: Array, switched: bool = False
+        cls, problem: Shot, params: _core.Params, tau: Array, jumping: Sequence[float] = ()
     ) -> Discrepancy:
         """With standard deviations (groups,) that are known from elsewhere."""
         rows = tuple(slice(w.row, w.row + w.rows) for w in problem.windows)
         inputs = np.asarray(problem.hidden(params, KNOTS))
         group = np.repeat(np.arange(inputs.shape[1] // KNOTS), KNOTS)
-        if switched:
-            jumps = problem.jumps(params)
+        if jumping:
+            deviation = np.concatenate(
+                [np.full(w.rows, jumping[w.record]) for w in problem.windows]
+            )
+            jumps = problem.jumps(params) * deviation[:, None]
             inputs = np.hstack([inputs, jumps])
             group = np.concatenate([group, np.full(jumps.shape[1], len(tau) - 1)])
+            tau = np.append(tau[:-1], 1.0)
         products = np.array([inputs[r].T @ inputs[r] for r in rows])
-        return cls(rows, inputs, products, group, np.asarray(tau))
+        known = np.arange(len(tau)) >= len(tau) - (1 if jumping else 0)
+        return cls(rows, inputs, products, group, np.asarray(tau), known)
 
     def moving(self, level: float) -> Array:
         """(groups,): tau of inputs that each move the readings by so much; 0 where none does."""
@@ -114,11 +124,23 @@ class Discrepancy:
         """With the standard deviations under which the residual (rows,) is most likely."""
         least = self.moving(LEAST * np.sqrt(len(self.rows)))
         score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])
-        start = np.maximum(self.tau, 30.0 * least)
+        start = np.where(self.known, self.tau, np.maximum(self.tau, 30.0 * least))
         tau, larger = most_likely(
-            self.products, score, self.group, start, least, ITERATIONS, self.alike
+            self.products, score, self.group, start, least, ITERATIONS, self.alike, self.known
         )
         return replace(self, tau=tau, larger=larger)
+
+    def expected(self, residual: Array, at: Array | float = 0.0) -> Array:
+        """(windows, inputs): the inputs that explain the residual (rows,) of a simulation in which they are `at`
+        (windows, inputs): their mean, given that."""
+        at = np.broadcast_to(at, (len(self.rows), len(self.group)))
+        tau = self.tau * np.broadcast_to(self.larger, (len(self.rows), len(self.tau)))
+        found = np.empty(at.shape)
+        for k, (r, d) in enumerate(zip(self.rows, tau[:, self.group], strict=True)):
+            inner = np.eye(len(d)) + d[:, None] * self.products[k] * d
+            pulled = self.inputs[r].T @ (self.inputs[r] @ at[k] - residual[r])
+            found[k] = d * np.linalg.solve(inner, d * pulled)
+        return found
 
     @cached_property
     def whitener(self) -> Whitener:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,3 +72,11 @@ class WindowProblem(Problem, Protocol):
         """(rows, jumps): derivatives against the times, s, by which jumps of the command come ahead of the sample that
         shows them, in each window."""
         ...
+
+
+def is_commanded(
+    problem: WindowProblem,
+) -> TypeGuard[_core.BenchProblem | _core.PlatformProblem | _core.TankPlantProblem]:
+    """Whether recorded commands drive its valves."""
+    commanded = _core.BenchProblem, _core.PlatformProblem, _core.TankPlantProblem
+    return isinstance(problem, commanded)

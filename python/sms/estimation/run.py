@@ -38,6 +38,11 @@ class Run:
     commanded: bool = field(default=False, kw_only=True)
     """The command is taken from the record, although the controller of other records is simulated."""
 
+    jump_deviation: float = field(default=0.0, kw_only=True)
+    """s: how nearly the record tells when its commands jumped, as a standard deviation; 0: each is known."""
+    ahead: Array | None = field(default=None, kw_only=True)
+    """(n, commands), s: by how much the jump that a sample shows came ahead of it (jump_times.py)."""
+
     def part(self, samples: slice) -> Run:
         """Some of its samples, in a row."""
         return replace(
@@ -45,6 +50,7 @@ class Run:
             time=self.time[samples],
             signals={n: v[samples] for n, v in self.signals.items()},
             clipped={n: c[samples] for n, c in self.clipped.items()},
+            ahead=None if self.ahead is None else self.ahead[samples],
         )
 
     def compared(self, signal: str) -> Array:
@@ -78,19 +84,21 @@ def is_held(command: Array) -> bool:
     return bool(0.0 < np.mean(moves) < 1.0 - HELD and in_a_row < (1.0 - HELD) * np.sum(moves))
 
 
-def hold_of(rig: Rig, commands: Mapping[str, Array], step: float) -> Hold:
-    """What these commands do between their samples: as the rig file says, else as the record looks.
+def hold_of(rig: Rig, commands: Mapping[str, Array], step: float) -> tuple[Hold, float]:
+    """What these commands do between their samples: as the rig file says, else as the record looks; and how nearly it
+    is known when they jump, s.
 
-    step, s, is the record's: a logger at the controller's rate has every command that it held.
+    step, s, is the record's. A logger at the controller's rate has every command that it held. One that is slower shows
+    a jump up to a sampling period after it came: the standard deviation is that of an even distribution.
     """
-    for name in commands:
-        if (said := rig.signals[name].hold) is not None:
-            return said
+    said = next((h for name in commands if (h := rig.signals[name].hold) is not None), None)
     is_logged = "control_period" in rig.table and math.isclose(
         step, rig.declared("control_period").value, rel_tol=CLOCKS
     )
-    is_known = is_logged or all(map(is_held, commands.values()))
-    return "previous" if commands and is_known else "stepped"
+    if not commands or is_logged or said in ("previous", "linear"):
+        return said or ("previous" if is_logged else "stepped"), 0.0
+    held: Hold = "previous" if all(map(is_held, commands.values())) else "stepped"
+    return said or held, step / math.sqrt(12.0)
 
 
 def make_run(rig: Rig, record: Record) -> Run:
@@ -103,6 +111,7 @@ def make_run(rig: Rig, record: Record) -> Run:
     source = next(s for s in rig.records if s.name == record.name)
     time = signals.pop("time")
     commands = {n: v for n, v in signals.items() if n.startswith("valve_command")}
+    hold, deviation = hold_of(rig, commands, float((time[-1] - time[0]) / (len(time) - 1)))
     return Run(
         record.name,
         record.role,
@@ -110,7 +119,8 @@ def make_run(rig: Rig, record: Record) -> Run:
         signals,
         record.gauge,
         {n: v - rig.declared(n).value for n, v in source.conditions.items()},
-        hold=hold_of(rig, commands, float((time[-1] - time[0]) / (len(time) - 1))),
+        hold=hold,
+        jump_deviation=deviation,
         clipped=clipped_of(rig, record.signals),
         commanded=rig.control.controller == "simulated" and source.control.controller == "recorded",
     )

@@ -16,6 +16,7 @@ freedom (Pinheiro, Liu and Wu, J. Comput. Graph. Stat. 10, 2001; Lange, Little a
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sms.arrays import Array, Index
 
@@ -31,9 +32,10 @@ def most_likely(
     least: Array,
     iterations: int,
     alike: bool = False,
+    known: NDArray[np.bool_] | bool = False,
 ) -> tuple[Array, Array]:
     """(groups,) standard deviations, from `start` (groups,) and never below `least` (groups,); and (sets, groups), by
-    which factor those of each set are larger.
+    which factor those of each set are larger. known (groups,): of which that is `start`, in all sets.
 
     products (sets, k, k): H'H, of sets of data that share nothing but the groups. score (sets, k): H'y. group (k,): of
     each effect. alike: all sets have one standard deviation. Some ten iterations settle within some percent.
@@ -50,8 +52,8 @@ def most_likely(
         squares = mean**2 @ member
         sigma = sigma * np.sqrt(squares.sum(axis=0) / np.maximum(told.sum(axis=0), 1e-12))
         if not alike:
-            larger = (DEGREES + larger * squares) / (DEGREES + told)
+            larger = np.where(known, 1.0, (DEGREES + larger * squares) / (DEGREES + told))
             common = np.mean(1.0 / larger, axis=0)  # 1 where it ends
             larger, sigma = larger * common, sigma / np.sqrt(common)
-        sigma = np.maximum(sigma, least)
+        sigma = np.where(known, start, np.maximum(sigma, least))
     return np.asarray(sigma), np.sqrt(larger)

@@ -22,7 +22,7 @@ from sms.estimation.discrepancy import Discrepancy, Whitened
 from sms.estimation.divergence import WithinNumbers
 from sms.estimation.kind import Kind
 from sms.estimation.least_squares import MOST_STEPS, Free, Solution, fit_windows
-from sms.estimation.problem import WindowProblem
+from sms.estimation.problem import WindowProblem, is_commanded
 from sms.estimation.run import Run
 from sms.io.rig import Rig
 from sms.io.signals import without_leg
@@ -60,7 +60,12 @@ class Runs:
     def simulation(self) -> WindowProblem:
         """The records as the core's problem; InputError for what it refuses."""
         try:
-            return self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+            problem = self.kind.make_problem(self.rig, self.motions, self.channels, self.noise)
+            for number, run in enumerate(self.motions):
+                if run.ahead is not None and is_commanded(problem):
+                    for command, ahead in enumerate(run.ahead.T):
+                        problem.set_ahead(number, command, ahead)
+            return problem
         except ValueError as problem:
             names = ", ".join(f"{number}: {run.name}" for number, run in enumerate(self.motions))
             raise InputError(f"{self.rig.path}: {problem} (records {names})") from None
@@ -108,12 +113,17 @@ class Runs:
     ) -> Discrepancy:
         """The random hidden inputs for which the residual (rows,) of these parameters is most likely; if `alike`, those
         that are equally large in all windows."""
-        equations, switched = len(self.kind.hidden), self.kind.switched
-        return Discrepancy.of(self.problem, params, equations, residual, alike, switched)
+        equations = len(self.kind.hidden)
+        return Discrepancy.of(self.problem, params, equations, residual, alike, self.jumping)
 
     def discrepancy_of(self, params: _core.Params, tau: Array) -> Discrepancy:
         """Random hidden inputs of standard deviations (groups,) that other records told."""
-        return Discrepancy.sized(self.problem, params, tau, self.kind.switched)
+        return Discrepancy.sized(self.problem, params, tau, self.jumping)
+
+    @property
+    def jumping(self) -> tuple[float, ...]:
+        """How nearly it is known of each record when its commands jumped, s; empty where no record has commands."""
+        return tuple(run.jump_deviation for run in self.motions) if self.kind.switched else ()
 
     @cached_property
     def whole(self) -> Runs:

@@ -187,8 +187,12 @@ def _insensitive(trial: Trial, current: Fitted, data: Data, before: Left, after:
 
 
 def implausible(effect: Effect, fitted: Fitted, data: Data) -> str:
-    """That an effect is as large in a model as it can be, or larger, if so."""
-    for name in effect.parameters:
+    """That an effect is as large in a model as it can be, or larger, if so.
+
+    Of what only shapes an effect the end is that of its law (a tube without loss, a critical ratio of nearly one), and
+    nothing against its size.
+    """
+    for name in effect.parameters[: effect.sizes]:
         value, declared = fitted.params[name], fitted.hypothesis.start[name]
         beside = name != effect.parameters[0]
         entry = data.rig.table[name]
