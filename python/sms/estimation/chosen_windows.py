@@ -79,6 +79,7 @@ class ChosenWindows:
         return self.problem.hidden(params, knots)[self._rows]
 
     def jumps(self, params: _core.Params) -> Array:
+        """(rows, jumps), as WindowProblem has them."""
         return self.problem.jumps(params)[self._rows]
 
 
