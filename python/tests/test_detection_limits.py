@@ -18,6 +18,7 @@ from sms.diagnosis.design.detection_limits import (
 )
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.io import InputError
+from sms.io.declarations import Declaration
 from sms.rigs import kinds
 from sms.rigs.kinds import KINDS
 from typer.testing import CliRunner
@@ -45,6 +46,24 @@ def test_a_limit_is_three_standard_errors_and_grows_with_the_noise() -> None:
     for a, b in zip(quiet, loud, strict=True):
         assert a.size is not None and b.size is not None
         assert 1.0 < b.size / a.size <= 2.0 + 1e-6
+
+
+def test_a_shift_counts_from_the_end_of_the_declared_uncertainty() -> None:
+    rig, kind = published_rig("tank"), KINDS["tank"]
+    effects = [e for e in effects_of(rig) if e.key == "valve_centre_offset"]
+    run = kind.menu[0].simulated(rig, rig.start(), ("tank_pressure",))
+    assert run is not None
+    noise = {s: 1.0 for s in kind.outputs} | {"tank_pressure": 300.0}
+
+    def limit(uncertainty: float) -> Limit:
+        centre = {"valve_centre": Declaration(5.0, uncertainty)}
+        (found,) = limits_of(replace(rig, parameters=centre), kind, [run], noise, effects)
+        return found
+
+    exactly, roughly = limit(0.0), limit(0.03)
+    assert exactly.size is not None and roughly.size is not None
+    assert (exactly.declared, roughly.declared) == (0.0, 0.03)
+    assert roughly.size == pytest.approx(0.03 + exactly.size, rel=1e-9)
 
 
 def test_the_command_writes_table_and_page(short_menu: None, tmp_path: Path) -> None:

@@ -60,7 +60,10 @@ def limits_in_trials(kind: str, pair: tuple[str, str]) -> dict[str, InPair]:
 
 
 def _of_core(kind: str, pair: str) -> dict[str, tuple[float | None, str]]:
-    """Effect -> smallest size that the core sees in a healthy trial's records to identify with, and its unit."""
+    """Effect -> smallest size that the core sees in a healthy trial's records to identify with, and its unit.
+
+    Of a shift: beyond the declared uncertainty.
+    """
     seed = next(s for s in range(1000) if draw_runs(kind, runs_rng(s))[0] == pair)
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records"
@@ -71,7 +74,10 @@ def _of_core(kind: str, pair: str) -> dict[str, tuple[float | None, str]]:
     hypotheses = effects_of(rig)
     found = limits_of(rig, KINDS[kind], runs, noise_of(rig, KINDS[kind], runs), hypotheses)
     units = [rig.table[e.parameters[0]].unit for e in hypotheses]
-    return {key_of(e): (x.size, unit) for e, x, unit in zip(hypotheses, found, units, strict=True)}
+    return {
+        key_of(e): (None if x.size is None else x.size - x.declared, unit)
+        for e, x, unit in zip(hypotheses, found, units, strict=True)
+    }
 
 
 def table_of(kind: str) -> Table:

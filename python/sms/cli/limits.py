@@ -36,7 +36,8 @@ def limits(
 
     For each effect of the catalogue, each experiment that the diagnosis may propose, and each record that the rig file
     lists: the size that equals three standard errors of its estimate from one such run, with the noise as declared and
-    everything uncertain free within its declaration. "-" is an effect that it cannot show; the page says why.
+    everything uncertain free within its declaration; what shifts a number that is declared with an uncertainty is
+    counted from the end of that. "-" is an effect that it cannot show; the page says why.
     """
     from sms.diagnosis.design.detection_limits import as_csv, detection_limits  # noqa: PLC0415
     from sms.io import write_text_atomically  # noqa: PLC0415

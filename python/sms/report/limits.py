@@ -28,7 +28,8 @@ def limits_html(found: Limits) -> str:
     )
     lead = (
         "Each number is the detection limit of an effect: three standard errors of its size from one run of this "
-        "experiment, with everything that is declared as uncertain fitted too. The darker, the lower. A dash: not "
+        "experiment, with everything that is declared as uncertain fitted too; a shift of such a number counts "
+        "from the end of its declared uncertainty. The darker, the lower. A dash: not "
         f"identifiable from this run; hover over it for the reason. Noise of one sample: {noise}, taken as white."
     )
     numbers = "".join(

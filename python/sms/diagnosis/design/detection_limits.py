@@ -3,15 +3,16 @@
 An effect counts as detectable from three standard errors on (selection/identifiability.py). Its standard error is that
 of a best estimate from one record alone, with the noise as declared and white: the sensitivity to the effect in units
 of the noise, less what the initial state of every window can imitate, and less what the nuisance parameters can undo
-within what is declared known about them (estimation/nuisance.py). The kind's menu is simulated with the parameters as
-declared; a record is taken as it is.
+within what is declared known about them (estimation/nuisance.py). A shift of a number that is declared with an
+uncertainty counts from the end of that: within it, it is no error of the model. The kind's menu is simulated with the
+parameters as declared; a record is taken as it is.
 """
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,6 +49,8 @@ class Limit:
 
     size: float | None
     reason: str = ""
+    declared: float = 0.0
+    """Of that size: the declared uncertainty of the number that the effect shifts."""
 
 
 @dataclass(frozen=True)
@@ -182,13 +185,19 @@ def limits_of(
     reduced = project(nuisance, np.where(usable, raw, 0.0), [e.parameters[0] for e in effects])
     stroke = rig.declared("stroke").value
     return [
-        _limit(effect, rig, runs, stroke, raw[:, k], reduced[:, k])
+        _limit(effect, rig, runs, stroke, raw[:, k], reduced[:, k], baseline.known)
         for k, effect in enumerate(effects)
     ]
 
 
 def _limit(
-    effect: Effect, rig: Rig, runs: Runs, stroke: float, raw: Array, reduced: Array
+    effect: Effect,
+    rig: Rig,
+    runs: Runs,
+    stroke: float,
+    raw: Array,
+    reduced: Array,
+    known: Mapping[str, float],
 ) -> Limit:
     if all(rig.declared(n).fit for n in effect.parameters):
         return Limit(None, "fitted anyway")
@@ -201,14 +210,15 @@ def _limit(
     size = float(np.linalg.norm(reduced))
     if size < 1e-6 * float(np.linalg.norm(raw)):
         return Limit(None, "undone by parameters that may move")
-    limit = DETECTION / size
+    declared = known.get(effect.parameters[0], 0.0)
+    limit = declared + DETECTION / size
     low, high = effect.plausible_range(rig.declared(common_parameter(effect.parameters[0])).value)
     if effect.kind != "missing":  # a shift is seen beyond its declared value
-        declared = rig.declared(effect.parameters[0]).value
-        low, high = low - declared, high - declared
+        value = rig.declared(effect.parameters[0]).value
+        low, high = low - value, high - value
     if limit > max(abs(low), abs(high)):
         return Limit(None, "seen only beyond what is plausible")
-    return Limit(limit)
+    return Limit(limit, declared=declared)
 
 
 def as_csv(found: Limits) -> str:

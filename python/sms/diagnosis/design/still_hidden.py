@@ -4,7 +4,8 @@ With it stands the shift that would fit them best, to first order, whatever it i
 effect was on that day, and a later diagnosis that names it is compared with that (history/difference.py).
 
 An effect is looked at once the error that it makes beyond what the free parameters can imitate is more than two fair
-descriptions of one machine differ by (kind.Kind.practically_significant), and it is three standard errors at least.
+descriptions of one machine differ by (kind.Kind.practically_significant), and it is three standard errors at least. A
+shift of a number that is known with an uncertainty counts from the end of that: within it, it is no error of the model.
 """
 
 from __future__ import annotations
@@ -51,7 +52,8 @@ def still_hidden(fitted: Fitted, data: Data, effects: Sequence[Effect]) -> tuple
     ]
     for effect, name, own, best in zip(effects, names, size, estimates, strict=True):
         largest = max(abs(end) for end in room_of(effect, fitted.params, data.rig))
-        shift, unit = float(least / max(own, 1e-300)), data.rig.table[name].unit
+        within = fitted.hypothesis.known.get(name, 0.0)
+        shift, unit = within + float(least / max(own, 1e-300)), data.rig.table[name].unit
         found.append(
             StillHidden(
                 effect.id, effect.signal, effect.title, name, shift, unit, largest, *(best or ())
