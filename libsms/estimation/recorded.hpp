@@ -58,6 +58,14 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
 
 }  // namespace detail
 
+// In samples, by how much the command of a digital controller lags, in its mean, behind the line through what it
+// computes: half of the period for which it holds each value.
+template <typename S>
+S staircase_lag(const Params<S>& p, double record_step) {
+  const S held = p.control_period / S(record_step);
+  return S(0.5) * (held < S(1) ? held : S(1));
+}
+
 // A recorded command on its way to the valve, `late` samples behind. Times are counted in samples from the record's first.
 //
 // Where the previous value is held, a step of the integration has the mean of what arrives within it: a jump that a delay
@@ -67,12 +75,18 @@ S reading_error(const S& predicted, const Eigen::VectorXd& measured, Eigen::Inde
 // A stepped command has its jump where the sample that shows it was taken: a controller acts on the set-point of its own
 // time, and what it computed is what is logged then. Straight from the sample before, the valve would move ahead of its
 // command by half a sampling period. Where it moved ahead all the same, its jumps say by how much (command_jumps.hpp).
+// Between jumps it is a staircase too fine for its logger, whose mean lags behind the line through its samples.
 template <typename S>
 class RecordedVoltage {
  public:
-  // The command has to last.
-  RecordedVoltage(const Eigen::VectorXd& command, Hold hold, const S& late, const CommandJumps<S>& jumps = {})
-      : command_(command), hold_(hold), late_(late), jumps_(hold == Hold::linear ? CommandJumps<S>{} : jumps) {}
+  // lag: of a stepped command, in samples (staircase_lag). The command has to last.
+  RecordedVoltage(const Eigen::VectorXd& command, Hold hold, const S& late, const CommandJumps<S>& jumps = {},
+                  const S& lag = S(0))
+      : command_(command),
+        hold_(hold),
+        late_(late),
+        jumps_(hold == Hold::linear ? CommandJumps<S>{} : jumps),
+        lag_(hold == Hold::stepped ? lag : S(0)) {}
 
   bool is_held() const { return hold_ == Hold::previous; }
 
@@ -93,7 +107,7 @@ class RecordedVoltage {
     return averages_ || averaged;
   }
   // V, within that step.
-  S at(double at) const { return averages_ ? mean_ : detail::command_at<S>(command_, S(at) - late_); }
+  S at(double at) const { return averages_ ? mean_ : straight(S(at) - late_); }
 
   // The spool at `first`: it follows the command alone, and is run up over the 50 ms before, in stiff steps of h,
   // `parts` a sample.
@@ -140,11 +154,18 @@ class RecordedVoltage {
     return pace.samples > 1 ? S(sum * S(1.0 / pace.samples)) : sum;
   }
 
+  // Where it goes straight. From a sample that shows a jump on, the lag does not reach back beyond it.
+  S straight(const S& at) const {
+    const int sample = static_cast<int>(std::floor(value_of(at)));
+    const bool is_new = value_of(at) < sample + value_of(lag_) && detail::jumps(command_, sample - 1);
+    return is_new ? held(sample) : detail::command_at<S>(command_, at - lag_);
+  }
+
   // The same over some samples where it goes straight, by the trapezoidal rule.
   S mean_of_straight(const S& from, int samples) const {
-    S sum = S(0.5) * (detail::command_at<S>(command_, from) + detail::command_at<S>(command_, from + S(samples)));
+    S sum = S(0.5) * (straight(from) + straight(from + S(samples)));
     for (int k = 1; k < samples; ++k) {
-      sum += detail::command_at<S>(command_, from + S(k));
+      sum += straight(from + S(k));
     }
     return sum * S(1.0 / samples);
   }
@@ -184,7 +205,7 @@ class RecordedVoltage {
       const S ends = k + 1 < value_of(end) ? S(k + 1) : end;
       const S middle = S(0.5) * (begins + ends);
       const bool is_straight = !is_held() && !detail::jumps(command_, k);
-      sum += (ends - begins) * (is_straight ? detail::command_at<S>(command_, middle) : mean_of_held(k, begins, ends));
+      sum += (ends - begins) * (is_straight ? straight(middle) : mean_of_held(k, begins, ends));
       begins = ends;
     }
     return sum * S(1.0 / length);
@@ -194,6 +215,7 @@ class RecordedVoltage {
   Hold hold_;
   S late_;
   CommandJumps<S> jumps_;
+  S lag_;
   S mean_{0};
   bool averages_ = false;
 };

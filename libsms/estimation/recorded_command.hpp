@@ -36,7 +36,7 @@ class RecordedCommand final : public ValveDrive<S> {
       : p_(p),
         laws_(laws),
         voltage_(command, hold, delay_to_chamber(p) / S(record_step),
-                 {command, ahead, window.first, window.samples, record_step, further}),
+                 {command, ahead, window.first, window.samples, record_step, further}, staircase_lag(p, record_step)),
         first_(window.first),
         parts_(parts),
         h_(h) {}

@@ -50,7 +50,8 @@ Eigen::VectorXd TankPlant::state(const Params<double>& params, const Window& win
   const Tank<double> tank = tank_of(params, record);
   const int parts = steps_[static_cast<std::size_t>(window.record)].most();
   RecordedVoltage<double> command(record.command, record.hold, delay_to_chamber(tank.params) / record.step,
-                                  {record.command, record.ahead, window.first, window.samples, record.step, nullptr});
+                                  {record.command, record.ahead, window.first, window.samples, record.step, nullptr},
+                                  staircase_lag(tank.params, record.step));
   const TankState<double> state =
       begin(tank, start.data(), command.spool(tank.params, window.first, parts, record.step / parts));
   return vector_of(state);

@@ -143,7 +143,8 @@ void TankPlant::simulate(const Params<S>& params, const Window& window, const S*
   const S shortest(record.step / steps.most());
   const HiddenInputs<S> pushes(hidden, window.samples);
   RecordedVoltage<S> command(record.command, record.hold, delay_to_chamber(p) / S(record.step),
-                             {record.command, record.ahead, window.first, window.samples, record.step, hidden.further});
+                             {record.command, record.ahead, window.first, window.samples, record.step, hidden.further},
+                             staircase_lag(p, record.step));
   TankState<S> state = begin(tank, start, command.spool(p, window.first, steps.most(), shortest));
 
   TankTerms<S> t{};

@@ -433,6 +433,26 @@ TEST_CASE("a stepped command: straight, and held until the sample that shows a j
   CHECK_FALSE(command.begin_step(5.0, {1, 1}));
 }
 
+TEST_CASE("a stepped command lags where it goes straight, and not beyond a jump") {
+  Eigen::VectorXd volts(7);
+  volts << 1.0, 1.1, 1.2, 5.0, 5.1, 5.2, 5.3;
+  const auto arriving = [&](est::Hold hold, double at, const est::Pace& pace) {
+    est::RecordedVoltage<double> command(volts, hold, 0.0, {}, 0.1);
+    command.begin_step(at, pace);
+    return command.at(at + double(pace.samples) / pace.parts);
+  };
+  CHECK(arriving(est::Hold::stepped, 1.0, {10, 1}) == doctest::Approx(1.1));
+  CHECK(arriving(est::Hold::stepped, 2.4, {10, 1}) == doctest::Approx(1.2));  // until it jumps
+  CHECK(arriving(est::Hold::stepped, 3.0, {20, 1}) == doctest::Approx(5.0));
+  CHECK(arriving(est::Hold::stepped, 3.5, {10, 1}) == doctest::Approx(5.05));
+  CHECK(arriving(est::Hold::stepped, 4.0, {1, 2}) == doctest::Approx((0.5 * 5.09 + 5.19 + 0.5 * 5.29) / 2.0));
+  CHECK(arriving(est::Hold::linear, 1.0, {10, 1}) == doctest::Approx(1.11));
+  sms::Params<double> p;
+  p.control_period = 1e-3;
+  CHECK(est::staircase_lag(p, 5e-3) == doctest::Approx(0.1));
+  CHECK(est::staircase_lag(p, 0.5e-3) == doctest::Approx(0.5));
+}
+
 TEST_CASE("a jump further ahead of the sample that shows it adds its area to the step in which it comes") {
   Eigen::VectorXd volts(7), known = Eigen::VectorXd::Zero(7);
   volts << 1.0, 1.1, 1.2, 5.0, 5.1, 5.2, 5.3;

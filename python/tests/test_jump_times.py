@@ -23,8 +23,9 @@ EVERY = 10
 
 
 def steps_of(random: np.random.Generator) -> tuple[Index, Array]:
-    """When the set-point of 4 s steps, in whole milliseconds, once in each window, and the set-point at each."""
-    at = 500 + 1000 * np.arange(4) + random.integers(0, 100, 4)
+    """When the set-point of 4 s steps, in whole milliseconds, once in each window, 3 to 9 ms ahead of the sample that
+    shows it, and the set-point at each."""
+    at = 500 + 1000 * np.arange(4) + EVERY * random.integers(0, 10, 4) + random.integers(1, 8, 4)
     levels = 0.2 + np.cumsum(np.append(0.0, random.uniform(0.03, 0.06, 4) * (-1.0) ** np.arange(4)))
     return at, np.repeat(levels, np.diff(np.concatenate([[0], at, [4000]])))
 

@@ -8,7 +8,11 @@ import numpy as np
 import pytest
 from sms import _core
 from sms.diagnosis.adequacy.parameter_constancy import inconstancy
-from sms.diagnosis.adequacy.subset_estimates import found_value, record_by_record
+from sms.diagnosis.adequacy.subset_estimates import (
+    found_value,
+    record_by_record,
+    variance_between,
+)
 from sms.diagnosis.effects.catalogue import effects_of
 from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, nuisance_of
 from sms.diagnosis.pipeline import read_and_check
@@ -64,3 +68,20 @@ def test_of_one_record_alone_it_is_the_linear_estimate_beside_all_that_is_free(
         full = np.concatenate([fitted.fit.residual[rows], alone.departure])
         value = fitted.params[name] - float(reduced @ full) / float(reduced @ reduced)
         assert each[run.name][0] == pytest.approx(value, rel=1e-6)
+
+
+def test_the_variance_between_records_is_what_they_differ_by_beyond_their_errors() -> None:
+    random = np.random.default_rng(SEED)
+    print(f"seed {SEED}")
+    errors = random.uniform(0.5, 2.0, (4000, 4))
+
+    def mean_of(between: float) -> float:
+        values = 7.0 + random.normal(0.0, np.hypot(errors, between))
+        pairs = (list(zip(v, e, strict=True)) for v, e in zip(values, errors, strict=True))
+        return float(np.mean([variance_between(p) for p in pairs]))
+
+    assert mean_of(3.0) == pytest.approx(9.0, rel=0.15)
+    assert mean_of(0.0) < 0.5
+    alike = [(1.0, 0.3), (1.1, 0.3), (0.9, 0.2)]
+    assert variance_between(alike) == 0.0
+    assert variance_between([(1.0, 0.3)]) == variance_between([]) == 0.0

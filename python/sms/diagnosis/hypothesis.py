@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sms import _core
-from sms.arrays import Array
+from sms.arrays import Array, Index
 from sms.diagnosis.effects.catalogue import Effect
 from sms.estimation.block_statistics import (
     covariance_from,
@@ -282,7 +282,8 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
         before = fitted.discrepancy
         if before is None:
             return fitted
-        now = before.fitted_to(fitted.fit.residual)
+        counted = np.unique(runs.window[counted_rows(fitted)])
+        now = before.fitted_to(fitted.fit.residual, counted)
         felt = before.tau > 0.0
         if np.all(np.abs(np.log(now.tau[felt] / before.tau[felt])) < SETTLED):
             break
@@ -295,6 +296,12 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
             may_set_aside=True,
         )
     return fitted
+
+
+def counted_rows(fitted: Fitted) -> Index:
+    """The rows of the windows that a fit has not set aside."""
+    counted = fitted.fit.counted if isinstance(fitted.fit, WindowFit) else None
+    return np.arange(len(fitted.fit.residual)) if counted is None else counted
 
 
 def free_of(hypothesis: Hypothesis) -> list[Free]:
@@ -338,11 +345,9 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
                 found.jacobian[:, moved], found.residual, runs.block, known, weight
             )
         return covariance
-    jacobian, residual = fitted.whiten(found.jacobian), fitted.whiten(found.residual)
-    block = runs.block
-    if isinstance(found, WindowFit) and found.counted is not None:
-        jacobian, residual = jacobian[found.counted], residual[found.counted]
-        block = block[found.counted]
+    rows = counted_rows(fitted)
+    jacobian, residual = fitted.whiten(found.jacobian)[rows], fitted.whiten(found.residual)[rows]
+    block = runs.block[rows]
     bread = covariance_from(jacobian.T @ jacobian + pull.T @ pull)
     noise = max(float(np.mean(residual**2)), 1e-12) * fitted.hypothesis.inflation
     by_noise = np.diag(noise * bread)

@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from sms.arrays import Array
+from sms.arrays import Array, Index
 from sms.diagnosis.hypothesis import (
     WIDE,
     Data,
     Fitted,
     Healthy,
     Hypothesis,
+    counted_rows,
     fit,
     fit_with_discrepancy,
     weights_of,
@@ -41,12 +42,16 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     """
     assert data.reference is not None
     h = hypothesis
-    runs = with_jump_times(data.reference, _fitted_when_well(h, data.reference).params)
+    # Jumps that are taken in the middle of their period leave so much that the machine's numbers make up for them, and
+    # jumps found beside such numbers agree with them: so what is declared has the first word.
+    runs = with_jump_times(data.reference, h.start)
+    runs = with_jump_times(data.reference, _fitted_when_well(h, runs).params)
     fitted = _fitted_when_well(h, runs)
-    jacobian = fitted.whiten(fitted.fit.jacobian)
+    rows = counted_rows(fitted)
     residual = fitted.whiten(fitted.fit.residual)
+    jacobian = fitted.whiten(fitted.fit.jacobian)[rows]
     pull = weights_of(h, list(h.free))
-    inflation = _inflation(jacobian, residual, pull, runs)
+    inflation = _inflation(jacobian, residual[rows], pull, runs.block[rows])
     told = covariance_from(jacobian.T @ jacobian / inflation + pull.T @ pull)
     names = [n for n in h.free if n in h.known]
     place = [list(h.free).index(n) for n in names]
@@ -77,13 +82,13 @@ def _fitted_when_well(hypothesis: Hypothesis, runs: Runs) -> Fitted:
     return fit_with_discrepancy(hypothesis, runs, plainly.params, alike=True)
 
 
-def _inflation(jacobian: Array, residual: Array, pull: Array, runs: Runs) -> float:
+def _inflation(jacobian: Array, residual: Array, pull: Array, block: Index) -> float:
     """By what factor the scatter of the blocks' scores is larger than the information of whitened residuals (for
     independent ones both are the same): the geometric mean over the directions of the parameters, each counted by the
     share of what is known of it that these records tell. What they do not tell has no scatter to be measured.
     """
     information, declared = jacobian.T @ jacobian, pull.T @ pull
-    scatter = scatter_of_scores(jacobian, residual, runs.block)
+    scatter = scatter_of_scores(jacobian, residual, block)
     scale = np.sqrt(np.maximum(np.diag(information + declared), 1e-300))
     information, declared, scatter = (
         x / np.outer(scale, scale) for x in (information, declared, scatter)

@@ -117,6 +117,7 @@ def investigate(
     if data.reference is not None:
         hypothesis, data = from_reference(hypothesis, data)
     else:
+        data = data.timed(hypothesis.start)  # what is declared has the first word (reference.py)
         data = data.timed(fit(hypothesis, data.identify).params)
     baseline = fit(hypothesis, data.identify, discrepancy=data.allowed(data.identify))
     progress("looking which effects can be seen", 0.15)

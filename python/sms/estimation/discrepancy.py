@@ -120,15 +120,26 @@ class Discrepancy:
         size = np.sqrt(squares)
         return np.where(size > 0.0, level / np.where(size > 0.0, size, 1.0), 0.0)
 
-    def fitted_to(self, residual: Array) -> Discrepancy:
-        """With the standard deviations under which the residual (rows,) is most likely."""
+    def fitted_to(self, residual: Array, counted: Index | None = None) -> Discrepancy:
+        """With the standard deviations under which the residual (rows,) is most likely.
+
+        counted: the windows that tell them where they are alike in all, those that a fit has not set aside; None: all.
+        """
         least = self.moving(LEAST * np.sqrt(len(self.rows)))
         score = np.array([self.inputs[r].T @ residual[r] for r in self.rows])
         start = np.where(self.known, self.tau, np.maximum(self.tau, 30.0 * least))
+        which = counted if self.alike and counted is not None else np.arange(len(self.rows))
         tau, larger = most_likely(
-            self.products, score, self.group, start, least, ITERATIONS, self.alike, self.known
+            self.products[which],
+            score[which],
+            self.group,
+            start,
+            least,
+            ITERATIONS,
+            self.alike,
+            self.known,
         )
-        return replace(self, tau=tau, larger=larger)
+        return replace(self, tau=tau, larger=1.0 if self.alike else larger)
 
     def expected(self, residual: Array, at: Array | float = 0.0) -> Array:
         """(windows, inputs): the inputs that explain the residual (rows,) of a simulation in which they are `at`
