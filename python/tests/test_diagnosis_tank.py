@@ -127,7 +127,7 @@ def test_a_flow_proportional_to_the_rate_is_another_volume(tmp_path: Path) -> No
 
 @pytest.mark.parametrize(
     "truth",
-    [{"dead_band_change": 0.05}, {"tank_inflow_heat_change": 0.1}, {"exhaust_flow_change": -0.1}],
+    [{"dead_band_change": 0.1}, {"tank_inflow_heat_change": 0.1}, {"exhaust_flow_change": -0.1}],
 )
 def test_effects_that_are_one_equation_are_fitted_together(
     tmp_path: Path, truth: dict[str, float]

@@ -162,9 +162,9 @@ def test_the_answer_says_what_is_left_beside_the_cause(leaking_bench: Diagnosis)
     assert 0.5 < cause.share_low <= cause.share <= cause.share_high <= 1.0
     left = answer.remainder
     assert isinstance(left, Unexplained)
-    assert not left.practically_significant and left.share_of_excess == pytest.approx(
-        1.0 - cause.share, abs=0.02
-    )
+    assert not left.practically_significant
+    # A cause's share is asked with what is known free to move there, the remainder with all values held.
+    assert left.share_of_excess == pytest.approx(1.0 - cause.share, abs=0.03)
     assert set(left.rms) == set(left.floor) == set(left.tolerated)
     assert left.sentence in answer.conclusion
 
