@@ -170,8 +170,7 @@ auto bind_shooting_problem(py::module_& m, const char* name) {
           },
           py::arg("params"),
           "(rows, commands x 8): derivatives against the time, s, by which the largest jumps of each window's command "
-          "come "
-          "further ahead of the sample that shows them; zeros where there are fewer.")
+          "come further ahead of the sample that shows them; zeros where there are fewer.")
       .def(
           "jump_samples",
           [](const Problem& p) {
