@@ -86,6 +86,20 @@ def test_the_sizes_of_the_inputs_are_found_and_that_of_one_that_is_not_there_goe
     assert np.mean(white**2) == pytest.approx(1.0, abs=0.3)
 
 
+def test_a_window_that_a_fit_sets_aside_does_not_say_how_large_alike_inputs_are() -> None:
+    random = draw("windows set aside")
+    problem = drawn(random)
+    residual = residual_of(problem, (1.0, 0.3), random)
+    plain = Discrepancy.of(problem, _core.Params(), EQUATIONS, residual, alike=True)
+    wild = residual.copy()
+    wild[plain.rows[5]] *= 1e3
+    others = np.delete(np.arange(WINDOWS), 5)
+    found = plain.fitted_to(wild, others)
+    assert np.all(plain.fitted_to(wild).tau > 10.0 * plain.tau)
+    assert found.tau == pytest.approx(plain.fitted_to(residual, others).tau)
+    assert np.all(found.tau < 1.5 * plain.tau)
+
+
 def test_the_times_of_a_command_s_jumps_are_one_more_input_of_known_size() -> None:
     random = draw("times of jumps")
     problem = drawn(random)

@@ -13,7 +13,6 @@ from sms.diagnosis.selection import backward_elimination, candidates, judgement,
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step, chosen_by_step
 from sms.diagnosis.selection.outcome import Outcome, Round
-from sms.estimation.windows import Runs
 
 from validation.random_cases import draw
 
@@ -27,8 +26,8 @@ def inflation(residual: Any, weak: int = 0) -> float:
     # What acts all through a block, as most parameters of a plant do.
     jacobian += 2.0 * np.repeat(random.normal(size=(BLOCKS, PARAMETERS + weak)), SAMPLES, axis=0)
     jacobian[:, PARAMETERS:] *= 1e-6
-    runs = SimpleNamespace(block=np.repeat(np.arange(BLOCKS), SAMPLES))
-    return _inflation(jacobian, residual, 0.1 * np.eye(PARAMETERS + weak), cast(Runs, runs))
+    block = np.repeat(np.arange(BLOCKS), SAMPLES)
+    return _inflation(jacobian, residual, 0.1 * np.eye(PARAMETERS + weak), block)
 
 
 @pytest.mark.parametrize("weak", [0, 12])
@@ -37,7 +36,7 @@ def test_reference_records_inflate_a_variance_by_what_lasts_through_a_block(weak
     random = draw("inflation")
     white = random.normal(size=BLOCKS * SAMPLES)
     lasting = np.repeat(random.normal(size=BLOCKS), SAMPLES)
-    assert 1.0 <= inflation(white, weak) < 1.6
+    assert 1.0 <= inflation(white, weak) < 1.8  # of 800 draws one is above 1.6
     # Of a residual that is half constant in a block, scores along columns that are so too scatter
     # by 0.5 x 0.8 x SAMPLES times their information.
     expected = 0.5 + 0.5 * 0.8 * SAMPLES
