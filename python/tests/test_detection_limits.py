@@ -82,6 +82,12 @@ def test_the_command_writes_table_and_page(short_menu: None, tmp_path: Path) -> 
     assert "Detection limits" in page and 'class="heat"' in page
 
 
+def test_a_folder_that_cannot_be_made_is_said(short_menu: None) -> None:
+    done = CliRunner().invoke(app, ["limits", "tank", "--out", "/proc/nowhere"])
+    assert isinstance(done.exception, InputError)
+    assert "/proc/nowhere/limits.csv: cannot be written" in str(done.exception)
+
+
 def test_a_kind_without_menu_is_refused(tmp_path: Path) -> None:
     rig = replace(published_rig("tank"), kind="cylinder", path=tmp_path / "rig.toml")
     with pytest.raises(InputError, match="a cylinder has no menu of experiments"):

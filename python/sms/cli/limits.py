@@ -47,7 +47,6 @@ def limits(
     check_output_folder(out)
     with progress_bar("simulating the experiments") as progress:
         found = detection_limits(rig, progress)
-    out.mkdir(parents=True, exist_ok=True)
     write_text_atomically(out / "limits.csv", as_csv(found))
     write_text_atomically(out / "limits.html", limits_html(found))
     console = Console(markup=False)  # a title that its owner chose may look like it

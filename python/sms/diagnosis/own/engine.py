@@ -124,7 +124,6 @@ def write_diagnosis(diagnosis: Diagnosis, out: Path) -> tuple[Path, Path]:
 
     With causes also extended.toml, the values of the extended model (`read_parameters`).
     """
-    out.mkdir(parents=True, exist_ok=True)
     page, data = out / "report.html", out / "diagnosis.json"
     write_page(page, report_html(diagnosis))
     write_text_atomically(data, as_json(diagnosis))

@@ -314,7 +314,6 @@ def write_fmu_diagnosis(answer: Answer, path: Path, out: Path) -> tuple[Path, ..
     rig_text = (
         _extended_text(answer, path, out) if answer.extended is not None and answer.causes else None
     )
-    out.mkdir(parents=True, exist_ok=True)
     write_page(page, html)
     write_text_atomically(data, text)
     if rig_text is None:
