@@ -218,8 +218,10 @@ def test_scatter_is_that_of_blocks_where_segments_go_together() -> None:
     n = 8 * 40
     white = rng.standard_normal((n, 1))
     variance = np.ones((n, 1))
-    assert scatter(white, variance)[0] == pytest.approx(1.0, abs=0.7)
+    degrees = n // max(BLOCKS) - 1
+    least, most = chi2.ppf([1e-6, 1.0 - 1e-6], degrees) / degrees  # of so few blocks
+    assert least < scatter(white, variance)[0] < most
     slow = np.repeat(rng.standard_normal((n // 8, 1)), 8, axis=0)
     inflation, freedom = scatter(slow, variance)
-    assert inflation == pytest.approx(8.0, rel=0.6)
-    assert freedom == n // max(BLOCKS) - 1
+    assert 8.0 * least < inflation < 8.0 * most
+    assert freedom == degrees
