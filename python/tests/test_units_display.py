@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import pint
 import pytest
@@ -49,10 +50,15 @@ def shown_units() -> list[tuple[str, str, float]]:
     return sorted((unit, shown.label, shown.factor) for unit, shown in found)
 
 
+@cache
+def registry() -> pint.UnitRegistry[float]:
+    """Half a second to read; it is not changed."""
+    return pint.UnitRegistry()
+
+
 @pytest.mark.parametrize(("si_unit", "label", "factor"), shown_units())
 def test_factor_agrees_with_pint(si_unit: str, label: str, factor: float) -> None:
-    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
-    one = registry.Quantity(1.0, "" if si_unit == "1" else si_unit)
+    one = registry().Quantity(1.0, "" if si_unit == "1" else si_unit)
     expected = one.to(MEANING.get(label, label)).magnitude
     assert factor == pytest.approx(expected, rel=1e-12)
 

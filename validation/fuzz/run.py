@@ -62,12 +62,13 @@ def run(seed: int, numbers: range, keep: Path | None, only: str = "") -> Iterato
     gc.freeze()
     root = Path(tempfile.mkdtemp(prefix="sms-fuzz-"))
     try:
-        if _child(lambda: write_inputs(root), root / "inputs") != 0:
+        drawn = [(number, base_of(seed, number)[0]) for number in numbers]
+        asked = [(n, b) for n, b in drawn if only in " ".join((b.folder, b.program, *b.command))]
+        folders = {base.folder for _, base in asked}
+        if _child(lambda: write_inputs(root, folders), root / "inputs") != 0:
             raise RuntimeError((root / "inputs.err").read_text())
-        for number in numbers:
-            base = base_of(seed, number)[0]
-            if only in " ".join((base.folder, base.program, *base.command)):
-                yield _run_one(seed, number, base, root, keep)
+        for number, base in asked:
+            yield _run_one(seed, number, base, root, keep)
     finally:
         shutil.rmtree(root, ignore_errors=True)
 
