@@ -373,12 +373,25 @@ def name_of(setting: Setting, effect: Effect) -> str:
     return f"{setting.kind}-{setting.law or 'recorded'}-{effect.key}{laws}"
 
 
+IN_LEG_2 = {
+    common_parameter(e.parameters[0])
+    for e in catalogue("platform")
+    if is_of_leg(e.parameters[0]) and (e.signal or "").endswith("leg 2")
+}
+"""What a platform may have in its second leg alone."""
+
+
 def case(setting: Setting, effect: Effect) -> ParameterSet:
-    """Heavy where a bench has shown it under that controller, and a platform with its command recorded, or in another
-    leg."""
-    known = setting.kind == "platform" and setting.law is not None
-    first_or_third = bool(re.search(r"(_| leg )[13]$", effect.signal or ""))
-    heavy = (known or first_or_third) and effect.controller is None
+    """Heavy where it has been shown of another controller, in another leg, or of one leg where all have it: what all
+    have and what a leg has more are added before anything is worked out (test_diagnosis_platform.py)."""
+    known = (setting.kind, setting.law) in (
+        ("bench", "state_feedback"),
+        ("platform", "pid"),
+        ("platform", "state_feedback"),
+    )
+    first_or_third = bool(re.search(r"(_|leg )[13]$", effect.signal or ""))
+    every_leg = setting.kind == "platform" and effect.parameters[0] in IN_LEG_2
+    heavy = (known or first_or_third or every_leg) and effect.controller is None
     marks = [pytest.mark.full] if heavy else []
     return pytest.param(setting, effect, id=name_of(setting, effect), marks=marks)
 
