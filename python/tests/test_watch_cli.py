@@ -92,24 +92,30 @@ def test_a_stream_that_ends_before_the_machine_is_learned_is_said(
 
 # ---- a bench of another simulator ------------------------------------------------------------------
 
-LEARN, WELL, ILL = 150.0, 40.0, 60.0
+LEARN, WELL = 150.0, 40.0
+SHORT = 120.0
+"""s: the least that a healthy machine is learned from."""
 LEAK = 7e-10
 """kg/(s Pa), of the lower chamber: three times the detection limit of the blind trials."""
 
 
-@pytest.fixture(scope="module")
-def day(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """rig.toml of an imperfect bench, well.csv of it, and ill.csv, in whose course it begins to leak."""
-    folder = tmp_path_factory.mktemp("day")
+def day_of(folder: Path, learn: float, ill: float) -> Path:
+    """rig.toml of an imperfect bench, well.csv of it, and ill.csv, at whose end it leaks for so long."""
+    onset = learn + WELL
     trial = draw_trial("bench", 2, "none", 3.0, 2.0)
     write_trial(trial, folder, folder.parent / "sealed" / "truth.json")
     leak = effects.find("bench", "fitting_leakage:lower")[0].hidden_in(trial.truth, LEAK)
-    whole = list(traffic(trial, LEARN + WELL + ILL, 5, (Change(LEARN + WELL, leak),)))
+    whole = list(traffic(trial, onset + ill, 5, (Change(onset, leak),)))
     columns = {n: np.concatenate([piece[n] for piece in whole]) for n in whole[0]}
-    well = columns["time"] < LEARN + WELL
+    well = columns["time"] < onset
     write_record(folder / "well.csv", {n: v[well] for n, v in columns.items()})
     write_record(folder / "ill.csv", columns)
     return folder
+
+
+@pytest.fixture(scope="module")
+def day(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return day_of(tmp_path_factory.mktemp("day"), LEARN, 60.0)
 
 
 def events(out: Path, event: str) -> list[dict[str, Any]]:
@@ -119,21 +125,22 @@ def events(out: Path, event: str) -> list[dict[str, Any]]:
 
 @needs_fits
 def test_a_bench_that_begins_to_leak_is_alarmed_and_not_before(
-    day: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(healthy, "FIT_LENGTH", 30.0)  # s; half of it, half as long a fit
+    monkeypatch.setattr(healthy, "FIT_LENGTH", 20.0)  # s; a third of it, a third as long a fit
+    day = day_of(tmp_path / "day", SHORT, 40.0)
     out, told = tmp_path / "out", tmp_path / "told.json"
     keep = "import sys, pathlib; pathlib.Path(sys.argv[1]).write_text(sys.argv[2])"
     result = run(
-        *(str(day / "rig.toml"), "--play", str(day / "ill.csv"), "--learn", str(LEARN)),
+        *(str(day / "rig.toml"), "--play", str(day / "ill.csv"), "--learn", str(SHORT)),
         *("--diagnose-after", "0", "--out", str(out), "--quiet"),
         *("--on-alarm", f"{sys.executable} -c '{keep}' {told}"),
     )
     assert result.exit_code == 0, result.output
     (learned,) = events(out, "learned")
-    assert learned["segments"] == LEARN / 5.0
+    assert learned["segments"] == SHORT / 5.0
     (alarm,) = events(out, "alarm")
-    onset = LEARN + WELL
+    onset = SHORT + WELL
     assert onset < alarm["raised_s"] <= onset + 60.0
     assert abs(alarm["since_s"] - onset) <= 10.0
     best = alarm["guesses"][0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,22 @@ from sms.diagnosis import Diagnosis, diagnose
 from validation.trials import bad_input as bad
 
 SEED = 7
+
+
+Healthy = Callable[[str, Path], Path]
+
+
+@pytest.fixture(scope="module")
+def healthy(tmp_path_factory: pytest.TempPathFactory) -> Healthy:
+    """(kind, folder) -> the folder with records of a machine with nothing wrong; each kind is drawn once."""
+    drawn: dict[str, Path] = {}
+
+    def of(kind: str, folder: Path) -> Path:
+        if kind not in drawn:
+            drawn[kind] = bad.healthy(kind, SEED, tmp_path_factory.mktemp("drawn") / kind)
+        return Path(shutil.copytree(drawn[kind], folder))
+
+    return of
 
 
 def answer(folder: Path) -> Diagnosis:
@@ -31,9 +49,9 @@ def errors(found: Diagnosis) -> str:
 )
 @pytest.mark.parametrize("noise", [0.0, 1.0])
 def test_a_dead_channel_is_a_data_fault(
-    tmp_path: Path, kind: str, signal: str, noise: float
+    healthy: Healthy, tmp_path: Path, kind: str, signal: str, noise: float
 ) -> None:
-    folder = bad.healthy(kind, SEED, tmp_path / "run")
+    folder = healthy(kind, tmp_path / "run")
     bad.dead(folder, signal, noise * (1e-4 if signal.startswith("extension") else 250.0))
     found = answer(folder)
     assert (found.verdict, found.causes) == ("data-fault", ())
@@ -45,10 +63,10 @@ def test_a_dead_channel_is_a_data_fault(
     [("tank", "tank_pressure"), ("bench", "chamber_pressure_upper"), ("bench", "extension")],
 )
 def test_saturation_through_half_the_run_is_said_and_names_no_cause(
-    tmp_path: Path, kind: str, signal: str
+    healthy: Healthy, tmp_path: Path, kind: str, signal: str
 ) -> None:
     """What is clipped is compared with nothing; where too little is left it is a data fault."""
-    folder = bad.healthy(kind, SEED, tmp_path / "run")
+    folder = healthy(kind, tmp_path / "run")
     bad.saturated(folder, signal)
     found = answer(folder)
     assert found.causes == ()
@@ -66,9 +84,9 @@ def test_saturation_through_half_the_run_is_said_and_names_no_cause(
 )
 @pytest.mark.parametrize("record", [0, pytest.param(3, marks=pytest.mark.full)])
 def test_a_record_of_another_machine_is_said_to_contradict_the_rest(
-    tmp_path: Path, kind: str, effect: str, multiple: float, record: int
+    healthy: Healthy, tmp_path: Path, kind: str, effect: str, multiple: float, record: int
 ) -> None:
-    folder = bad.healthy(kind, SEED, tmp_path / "run")
+    folder = healthy(kind, tmp_path / "run")
     bad.contradict(kind, SEED, folder, effect, record, multiple)
     found = answer(folder)
     assert (found.verdict, found.causes) == ("data-fault", ())
@@ -78,8 +96,8 @@ def test_a_record_of_another_machine_is_said_to_contradict_the_rest(
 
 @pytest.mark.full
 @pytest.mark.parametrize(("kind", "signal"), [("tank", "tank_pressure"), ("bench", "extension")])
-def test_a_late_clock_is_a_cause(tmp_path: Path, kind: str, signal: str) -> None:
-    folder = bad.healthy(kind, SEED, tmp_path / "same")
+def test_a_late_clock_is_a_cause(healthy: Healthy, tmp_path: Path, kind: str, signal: str) -> None:
+    folder = healthy(kind, tmp_path / "same")
     bad.late_clock(folder, signal, [0.12] * 4)
     found = answer(folder)
     assert found.verdict in ("cause", "class")
@@ -93,9 +111,9 @@ def test_a_late_clock_is_a_cause(tmp_path: Path, kind: str, signal: str) -> None
     [("tank", "tank_pressure"), pytest.param("bench", "extension", marks=pytest.mark.full)],
 )
 def test_a_clock_that_is_late_otherwise_in_each_record_is_a_fault_of_the_records(
-    tmp_path: Path, kind: str, signal: str
+    healthy: Healthy, tmp_path: Path, kind: str, signal: str
 ) -> None:
-    folder = bad.healthy(kind, SEED, tmp_path / "each")
+    folder = healthy(kind, tmp_path / "each")
     bad.late_clock(folder, signal, [0.12, -0.06, 0.03, -0.10])
     found = answer(folder)
     assert (found.verdict, found.causes) == ("data-fault", ())
@@ -111,9 +129,9 @@ def test_a_clock_that_is_late_otherwise_in_each_record_is_a_fault_of_the_records
 )
 @pytest.mark.parametrize("factor", [10.0, pytest.param(0.1, marks=pytest.mark.full)])
 def test_a_rig_file_that_is_wrong_by_ten_is_named_with_the_right_value(
-    tmp_path: Path, kind: str, parameter: str, effect: str, factor: float
+    healthy: Healthy, tmp_path: Path, kind: str, parameter: str, effect: str, factor: float
 ) -> None:
-    folder = bad.healthy(kind, SEED, tmp_path / "run")
+    folder = healthy(kind, tmp_path / "run")
     meant: dict[str, float] = {"tank_volume": 5e-3, "moving_mass": 3.639}
     bad.declare(folder, parameter, factor)
     found = answer(folder)
