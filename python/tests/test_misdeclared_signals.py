@@ -69,7 +69,7 @@ def test_a_right_declaration_is_left_alone(healthy: Path, leaking: Path) -> None
         (lambda x: {"time": 1.07 * x["time"]}, "time", "write scale = 0.934579 in [signals] time"),
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("machine", ["healthy", "leaking"])
+@pytest.mark.parametrize("machine", [pytest.param("healthy", marks=pytest.mark.full), "leaking"])
 def test_a_slip_is_said_with_the_line_to_write(
     slip: Callable[[Signals], Signals],
     signal: str,

@@ -246,24 +246,29 @@ def test_healthy_platform_is_what_the_source_says() -> None:
         assert off < 0.35 * deviation
 
 
-@pytest.mark.parametrize("key", [e.key for e in effects.on("bench") if e is not effects.NONE])
-def test_every_effect_changes_the_records_and_its_neutral_value_nothing(key: str) -> None:
-    (effect,) = [e for e in effects.on("bench") if e.key == key]
+def at_its_ends(truth: Truth) -> Array:
+    """What the sensors of a bench read between its ends, without noise; a column for each."""
     rig = RIGS["bench"]
-    truth = as_declared(Truth(), rig.declared)
     plan = rig.plan("ends", np.random.default_rng(1))
     quiet = {signal: np.zeros(plan.feedforward.size) for signal in rig.signals}
+    return np.column_stack([*rig.measure(truth, plan, quiet).signals.values()])
+
+
+@pytest.fixture(scope="module")
+def healthy() -> Array:
+    return at_its_ends(as_declared(Truth(), RIGS["bench"].declared))
+
+
+@pytest.mark.parametrize("key", [e.key for e in effects.on("bench") if e is not effects.NONE])
+def test_every_effect_changes_the_records_and_its_neutral_value_nothing(
+    key: str, healthy: Array
+) -> None:
+    (effect,) = [e for e in effects.on("bench") if e.key == key]
+    truth = as_declared(Truth(), RIGS["bench"].declared)
     size = effect.drawn_from[0] if effect.drawn_from else 3.0 * effect.first_step
-
-    def record(value: float) -> Array:
-        changed = effect.hidden_in(truth, value) if value else truth
-        return np.column_stack([*rig.measure(changed, plan, quiet).signals.values()])
-
-    healthy = record(0.0)
-    assert not np.array_equal(healthy, record(effect.sense * size))
+    assert not np.array_equal(healthy, at_its_ends(effect.hidden_in(truth, effect.sense * size)))
     if not effect.shifts:
-        neutral = rig.measure(effect.hidden_in(truth, 0.0), plan, quiet)
-        assert np.array_equal(healthy, np.column_stack([*neutral.signals.values()]))
+        assert np.array_equal(healthy, at_its_ends(effect.hidden_in(truth, 0.0)))
 
 
 # Instruments
