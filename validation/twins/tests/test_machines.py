@@ -295,7 +295,7 @@ def test_noise_has_the_size_it_declares(rng: np.random.Generator) -> None:
 
 def test_limit_is_where_the_effect_is_seen() -> None:
     rig = RIGS["tank"]
-    found = limits.Limits(rig, [rig.plan("strokes", np.random.default_rng(1))])
+    found = limits.Limits(rig, [rig.plan("strokes", np.random.default_rng(1))], every=3)
     (offset,) = effects.find("tank", "valve_leakage")
     limit = found.limit(offset)
     assert limit is not None
