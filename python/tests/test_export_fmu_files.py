@@ -39,8 +39,15 @@ ALL = pytest.mark.parametrize("kind", KINDS)
 # ---- the file ------------------------------------------------------------------------------------------------
 
 
-@BOTH
-@ALL
+@pytest.mark.parametrize(
+    ("kind", "version"),
+    [
+        # The largest; with parameters of its own it is looked at below.
+        pytest.param(k, v, marks=[pytest.mark.full] if (k, v) == ("platform", "3.0") else [])
+        for k in KINDS
+        for v in ("2.0", "3.0")
+    ],
+)
 def test_fmpy_finds_nothing_to_complain_of(exported: Any, kind: str, version: str) -> None:
     assert validate_fmu(str(exported(kind, version))) == []
 
