@@ -34,7 +34,7 @@ constexpr Rows kTank[] = {
     {sms::index_of_ambient_pressure, sms::index_of_ambient_pressure},
     {sms::index_of_gas_constant, sms::index_of_exhaust_flow_change},
     {sms::index_of_inflow_heat_ratio, sms::index_of_wall_temperature},
-    {sms::index_of_chamber_leakage_lower, sms::index_of_chamber_leakage_lower},
+    {sms::index_of_chamber_leakage_lower, sms::index_of_chamber_leakage_index_lower},
     {sms::index_of_tube_length, sms::index_of_tank_wall_area},
     {sms::index_of_tank_initial_pressure, sms::index_of_tank_pressure_ceiling},
     {sms::index_of_thermocouple_time_constant, sms::index_of_heat_share},

@@ -1,6 +1,7 @@
 // Chambers, tubes, tank, reservoir: mass and energy add up, the limits are the textbook's.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -114,6 +115,7 @@ TEST_CASE("air is neither made nor lost between supply, chambers and exhaust, le
   for (int i = 0; i < sms_test::count; ++i) {
     p.valve_leakage = random.uniform(0.0, 1e-9);
     p.piston_leakage = random.uniform(0.0, 1e-9);
+    p.piston_leakage_index = random.uniform(0.3, 1.0);
     p.tube_length = random.uniform(0.0, 3.0);
     const sms::ValvePorts<double> ports = random_ports(random);
     const sms::EdgeFlows<double> valve =
@@ -151,6 +153,36 @@ TEST_CASE("leaks run from the higher pressure to the lower, and are absent to th
     const double a = ports.lower.pressure, b = ports.upper.pressure, out = ports.exhaust.pressure;
     CHECK(flow.lower.in - flow.lower.out == doctest::Approx(1e-9 * (b - a) + 2e-9 * (out - a)).scale(1e-5));
     CHECK(flow.upper.in - flow.upper.out == doctest::Approx(1e-9 * (a - b) + 3e-9 * (out - b)).scale(1e-5));
+  }
+}
+
+TEST_CASE("the power law of leaks: of a gas, one way as the other, whole where it becomes laminar") {
+  sms_test::Random random;
+  for (int i = 0; i < sms_test::count; ++i) {
+    const double high = random.uniform(1e4, 1e6), ratio = random.uniform(0.0, 1.0), n = random.uniform(0.3, 1.0);
+    const double flow = sms::leak_flow(1e-9, n, high, ratio * high), back = sms::leak_flow(1e-9, n, ratio * high, high);
+    CHECK(same_bits(back, -flow));
+    CHECK(sms::leak_flow(1e-9, n, 2.0 * high, 2.0 * ratio * high) == doctest::Approx(2.0 * flow).epsilon(1e-12));
+    CHECK(flow >= sms::leak_flow(1e-9, n, high, (ratio + 1e-8) * high));
+    CHECK(sms::leak_flow(1e-9, n, high, 0.5 * high) == doctest::Approx(1e-9 * 0.5 * high).epsilon(1e-12));
+    CHECK(same_bits(sms::leak_flow(1e-9, 1.0, high, ratio * high), 1e-9 * (high - ratio * high)));
+    CHECK(sms::leak_flow(1e-9, n, high, (0.999 - 1e-9) * high) ==
+          doctest::Approx(sms::leak_flow(1e-9, n, high, (0.999 + 1e-9) * high)).epsilon(1e-5));
+  }
+}
+
+// As mass_flow.hpp says of two laws by C, b and m.
+TEST_CASE("what an exponent of a leak stands for") {
+  const struct { double exponent, m, within; } law[] = {{0.5, 1.1, 0.02}, {0.45, 2.0, 0.09}};
+  for (const auto& l : law) {
+    double least = 1e9, most = 0.0;
+    for (double r = 0.1; r < 0.99; r += 0.001) {
+      const double other = sms::iso_subsonic_flow<double>({1.0, 0.0, l.m}, r);
+      const double ratio = sms::leak_flow(1.0, l.exponent, 1.0, r) / other;
+      least = std::min(least, ratio);
+      most = std::max(most, ratio);
+    }
+    CHECK(std::sqrt(most / least) < 1.0 + l.within);
   }
 }
 

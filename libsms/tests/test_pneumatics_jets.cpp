@@ -84,6 +84,12 @@ TEST_CASE("flow through one orifice, by everything it depends on") {
       using S = std::decay_t<decltype(*x)>;
       return sms::classic_mass_flow<S>(sms::Params<S>(), x[0], {x[1], x[2]}, {x[3], S(290.0)});
     };
+    const auto leak = [](const auto* x) { return sms::leak_flow(x[0], x[1], x[2], x[3]); };
+    for (const double n : {random.uniform(0.3, 0.99), 1.0}) {
+      check_derivatives<4>(leak, {2e-8, n, p1, ratio * p1}, 1e-5);
+      check_derivatives<4>(leak, {2e-8, n, ratio * p1, p1}, 1e-5);
+      check_derivatives<4>(leak, {2e-8, n, p1, 0.9995 * p1}, 1e-5);
+    }
     check_derivatives<5>(iso, {2e-8, b, m, p1, ratio * p1}, 1e-5);
     check_derivatives<5>(iso, {2e-8, b, m, ratio * p1, p1}, 1e-5);
     check_derivatives<4>(classic, {1e-5, p1, 293.0, ratio * p1}, 1e-5);
@@ -119,6 +125,8 @@ TEST_CASE("the whole of one actuator's air, by command, pressures and parameters
       p.dead_volume_lower = x[5];
       p.valve_leakage = x[6];
       p.piston_leakage = x[7];
+      p.piston_leakage_index = x[12];
+      p.leakage_index = x[13];
       p.tube_length = x[8];
       p.exhaust_flow_change = x[9];
       p.bore_diameter = x[10];
@@ -127,9 +135,9 @@ TEST_CASE("the whole of one actuator's air, by command, pressures and parameters
     };
     const double voltage = random.uniform(0.3, 9.7);
     if (std::abs(voltage - 5.0) < 0.6) continue;
-    check_derivatives<12>(model,
+    check_derivatives<14>(model,
                           {voltage, random.uniform(9e4, 4.8e5), random.uniform(9e4, 4.8e5), 1.5, 1.4, 1e-4, 1e-10,
-                           1e-10, 0.3, 0.1, 0.1, 5.0},
+                           1e-10, 0.3, 0.1, 0.1, 5.0, random.uniform(0.3, 1.0), random.uniform(0.6, 3.0)},
                           2e-5);
   }
 }

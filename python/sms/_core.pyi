@@ -390,9 +390,25 @@ class Params:
     def bristle_stiffness(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def chamber_leakage_index_lower(self) -> float:
+        """
+        exponent of that flow over the pressure difference [1]; assumed, as piston_leakage_index
+        """
+    @chamber_leakage_index_lower.setter
+    def chamber_leakage_index_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def chamber_leakage_index_upper(self) -> float:
+        """
+        exponent of that flow over the pressure difference [1]; assumed, as piston_leakage_index
+        """
+    @chamber_leakage_index_upper.setter
+    def chamber_leakage_index_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def chamber_leakage_lower(self) -> float:
         """
-        chamber_leakage: flow from the lower chamber to ambient per pressure difference [kg/(s Pa)]; neutral
+        chamber_leakage: flow from the lower chamber to ambient per pressure difference, where that is half of the pressure [kg/(s Pa)]; neutral
         """
     @chamber_leakage_lower.setter
     def chamber_leakage_lower(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -400,7 +416,7 @@ class Params:
     @property
     def chamber_leakage_upper(self) -> float:
         """
-        chamber_leakage: flow from the upper chamber to ambient per pressure difference [kg/(s Pa)]; neutral
+        chamber_leakage: flow from the upper chamber to ambient per pressure difference, where that is half of the pressure [kg/(s Pa)]; neutral
         """
     @chamber_leakage_upper.setter
     def chamber_leakage_upper(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
@@ -1062,6 +1078,14 @@ class Params:
     def leakage_critical_ratio(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
+    def leakage_index(self) -> float:
+        """
+        subsonic index of that gap [1]; assumed, a labyrinth: 2; the first rows of the tables, which are leakage, have 1.14 and 1.32 when charging
+        """
+    @leakage_index.setter
+    def leakage_index(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def loop_gain(self) -> float:
         """
         state feedback, K_c [1]; published, section 8.2
@@ -1320,10 +1344,18 @@ class Params:
     @property
     def piston_leakage(self) -> float:
         """
-        piston_leakage: flow past the piston per pressure difference [kg/(s Pa)]; neutral
+        piston_leakage: flow past the piston per pressure difference, where one pressure is half of the other [kg/(s Pa)]; neutral
         """
     @piston_leakage.setter
     def piston_leakage(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def piston_leakage_index(self) -> float:
+        """
+        exponent of that flow over the pressure difference [1]; assumed, a laminar gap: 1; turbulent: 0.5; a nozzle that chokes: 0.4
+        """
+    @piston_leakage_index.setter
+    def piston_leakage_index(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
     @property
     def piston_mass(self) -> float:

@@ -60,9 +60,13 @@ def test_bounds_of_one_leg_keep_its_value_within_those_of_all() -> None:
 
 def test_effects_of_all_legs_of_one_and_of_its_sensors() -> None:
     found = {e.key: e for e in catalogue("platform")}
-    assert found["fitting_leakage of lower"].parameters == ("chamber_leakage_lower",)
+    assert found["fitting_leakage of lower"].parameters == (
+        "chamber_leakage_lower",
+        "chamber_leakage_index_lower",
+    )
     leg = found["fitting_leakage of lower, leg 2"]
-    assert leg.parameters == ("chamber_leakage_lower:2",) and "leg 2" in leg.title
+    assert leg.parameters == ("chamber_leakage_lower:2", "chamber_leakage_index_lower:2")
+    assert leg.sizes == 1 and "leg 2" in leg.title
     sensor = found["sensor_offset of extension_3"]
     assert sensor.parameters == ("sensor_offset_extension:3",)
     assert "position of leg 3" in sensor.title

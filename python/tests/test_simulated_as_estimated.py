@@ -186,6 +186,10 @@ whole samples; what would drive a piston into its end, or hardly be felt. A plat
 yields a micrometre a newton: by as much as it yields, the mechanism is evaluated beside its place."""
 FURTHER = {
     "leakage_critical_ratio": 0.3,
+    "leakage_index": 1.3,
+    "piston_leakage_index": 0.7,
+    "chamber_leakage_index_lower": 0.7,
+    "chamber_leakage_index_upper": 0.7,
     "tube_diameter": 5e-3,
     "tube_loss_factor": 2.0,
     "heat_transfer_coefficient": 60.0,

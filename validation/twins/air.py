@@ -92,12 +92,35 @@ def mass_flow(p: Machine, c: float, b: float, m: float, from_: float, t: float, 
 
 @compiled
 def leak(p: Machine, c: float, p1: float, t1: float, p2: float, t2: float) -> float:
-    """kg/s through a narrow gap from 1 to 2: sqrt(p1^2 - p2^2), straight within 0.1 percent."""
+    """kg/s through the valve's gap from 1 to 2: sqrt(p1^2 - p2^2), straight within 0.1 percent, or by the law of all
+    leaks."""
     high, low, t = (p1, p2, t1) if p1 >= p2 else (p2, p1, t2)
     choked = iso6358.choked_flow(c, high, t, ATMOSPHERE[0], ATMOSPHERE[1])
     ratio = low / high
     edge = ratio if ratio < 0.999 else 0.999
-    size = choked * sqrt(1.0 - edge * edge)
+    size = choked * (sqrt(1.0 - edge * edge) if p.leak_exponent == 0.0 else of_choked(p, edge))
+    if ratio > 0.999:
+        size *= (1.0 - ratio) / 0.001
+    return size if p1 >= p2 else -size
+
+
+@compiled
+def of_choked(p: Machine, ratio: float) -> float:
+    """A leak's flow over its choked flow: (1 - ((r - b)/(1 - b))^2)^n, as ISO 6358-1:2013."""
+    b = p.leak_critical_ratio
+    return 1.0 if ratio <= b else (1.0 - ((ratio - b) / (1.0 - b)) ** 2) ** p.leak_exponent
+
+
+@compiled
+def seep(p: Machine, conductance: float, p1: float, p2: float) -> float:
+    """kg/s past a seal or out of a fitting from 1 to 2: in proportion to the pressure difference, or by the law of all
+    leaks, which gives the same where one pressure is half of the other."""
+    if conductance == 0.0 or p.leak_exponent == 0.0:
+        return conductance * (p1 - p2)
+    high, low = (p1, p2) if p1 >= p2 else (p2, p1)
+    ratio = low / high
+    edge = ratio if ratio < 0.999 else 0.999
+    size = 0.5 * conductance * high * of_choked(p, edge) / of_choked(p, 0.5)
     if ratio > 0.999:
         size *= (1.0 - ratio) / 0.001
     return size if p1 >= p2 else -size
@@ -224,9 +247,8 @@ def valve_inflow(
 @compiled
 def leaks(p: Machine, upper: bool, pressure: float) -> float:
     """kg/s out of one chamber to the room, past the valve."""
-    out = (p.fitting_leakage_upper if upper else p.fitting_leakage_lower) * (
-        pressure - p.ambient_pressure
-    )
+    fitting = p.fitting_leakage_upper if upper else p.fitting_leakage_lower
+    out = seep(p, fitting, pressure, p.ambient_pressure)
     if not upper and p.check_valve_leak != 0.0 and pressure > p.check_valve_pressure:
         out += p.check_valve_leak * (pressure - p.check_valve_pressure)
     return out
@@ -297,7 +319,7 @@ def chamber_rates(
         inward = max(from_supply, 0.0) + max(from_exhaust, 0.0) + max(-lost, 0.0)
         outward = max(-from_supply, 0.0) + max(-from_exhaust, 0.0) + max(lost, 0.0)
         heat = inward * p.air_temperature
-        past = p.piston_leakage * (air[1 - side] - pressure)
+        past = seep(p, p.piston_leakage, air[1 - side], pressure)
         if past > 0.0:
             inward += past
             heat += past * (air[3 - side] if warm else p.air_temperature)

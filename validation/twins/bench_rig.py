@@ -68,7 +68,7 @@ class BenchRig:
         """One run; `reading_noise` of the extension enters the position loop."""
         error = truth.errors["extension"]
         motion = bench.simulate(
-            truth.machine,
+            truth.built,
             plan,
             reading_noise["extension"] + error.offset,
             error.gain,
@@ -93,7 +93,7 @@ class BenchRig:
             start[9] = truth.machine.coulomb_force * truth.machine.bristle_compliance * slide
         start[10] = start[1]
         start[6] = truth.machine.supply_pressure
-        states = bench.follow(truth.machine, commands["valve_command"], start, time, truth.maps)
+        states = bench.follow(truth.built, commands["valve_command"], start, time, truth.maps)
         return self._signals(truth, states)
 
     def _signals(self, truth: Truth, states: Array) -> dict[str, Array]:

@@ -97,7 +97,7 @@ class ClosedBenchRig(BenchRig):
         commands = np.zeros(count)
         states = np.zeros(((count - 1) * bench.FINE + 1, bench.STATES))
         run(
-            truth.machine,
+            truth.built,
             exact(),
             bench.balanced(truth.machine, plan.start),
             plan.setpoint,

@@ -96,7 +96,7 @@ class ClosedPlatformRig(PlatformRig):
         states = np.zeros(((len(commands) - 1) * platform.FINE + 1, platform.STATES))
         readings = np.zeros((len(states), platform.READINGS))
         run(
-            truth.machine,
+            truth.built,
             truth.body,
             platform.mechanism(truth.body),
             platform.exact_maps(),

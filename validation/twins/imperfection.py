@@ -8,6 +8,8 @@ What is hidden in a trial is one thing; this is what no model has, and what nobo
 - The valve's tables are read by Steffen's curve, as the core does, or straight between rows: the source does not say
   which, and where the valve begins to open the two differ by more than all else here.
 - Friction: so is the sliding friction, over the signed speed.
+- Leaks: what flows over the ratio of pressures has a critical ratio from 0 to 0.5 and an exponent from 0.5, a turbulent
+  restriction, to 1, a laminar gap (ISO 6358-1:2013, whose index stands outside the bracket). The core has other laws.
 - Sensors are not quite linear: a bow along the span over which they were calibrated, a tenth of the level of that span
   to either side of its best straight line. Data sheets of position transducers and pressure transmitters say 0.1 to 0.5
   percent for that ("independent linearity"); at a level of 1 to 4 percent it is 0.1 to 0.4 percent here. The line
@@ -43,6 +45,9 @@ SPEED = (0.0, 0.3, 0.1)
 """m/s, the same for the speed of a piston."""
 BOW = 0.1
 """Of the level, as a share of the span: a sensor's independent linearity."""
+CRITICAL_RATIO = (0.0, 0.5)
+LEAK_EXPONENT = (0.5, 1.0)
+"""From a turbulent restriction to a laminar gap."""
 FASTEST_CONTROL = 1e-3
 """s"""
 LARGEST = 10.0
@@ -130,6 +135,8 @@ class Imperfection:
     log_step: float  # s
     control_period: float  # s, for which the controller holds its command
     rounds_down: bool
+    leak_critical_ratio: float = 0.0
+    leak_exponent: float = 0.0  # 0: leaks flow as the source has it
 
     @property
     def maps(self) -> Maps:
@@ -151,7 +158,9 @@ def draw_imperfection(
     seed: np.random.SeedSequence,
 ) -> Imperfection:
     """A machine of so many axes whose instruments read `signals`, every draw from a stream of its own."""
-    for_maps, for_bows, for_logger, for_tables = (np.random.default_rng(s) for s in seed.spawn(4))
+    for_maps, for_bows, for_logger, for_tables, for_leaks = (
+        np.random.default_rng(s) for s in seed.spawn(5)
+    )
     level = 0.01 * percent
     straight = bool(for_tables.integers(2))
     errors = tuple(
@@ -173,6 +182,8 @@ def draw_imperfection(
         log_step,
         (FASTEST_CONTROL, log_step)[int(for_logger.integers(2))],
         bool(for_logger.integers(2)),
+        leak_critical_ratio=float(for_leaks.uniform(*CRITICAL_RATIO)),
+        leak_exponent=float(for_leaks.uniform(*LEAK_EXPONENT)),
     )
 
 

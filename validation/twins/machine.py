@@ -68,6 +68,12 @@ class Machine(NamedTuple):
     friction_lag: float = 0.0  # s, the lubricant film's
     cushion_damping: float = 0.0  # N s/m
 
+    # How what leaks flows, over the ratio of pressures: as the source has it, or a law of the imperfection.
+    leak_critical_ratio: float = 0.0
+    leak_exponent: float = (
+        0.0  # 0.5 turbulent, 1 laminar; 0: proportional, and past the valve's lands a labyrinth
+    )
+
     # Wrong, and in no catalogue.
     clogging_silencer: float = 0.0  # share of the exhaust's conductance lost now and then
     clog_period: float = 1.7  # s

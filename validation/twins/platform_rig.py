@@ -82,7 +82,7 @@ class PlatformRig:
             for i, error in zip(LEGS, errors, strict=True)
         ]
         motion = platform.simulate(
-            truth.machine,
+            truth.built,
             truth.body,
             plan,
             LOOP_GAIN,
@@ -113,7 +113,9 @@ class PlatformRig:
                 axis[7] = p.coulomb_force * p.bristle_compliance * way
             axis[8] = speeds[i]
         held = np.column_stack([commands[name] for name in self.commands])
-        return self._signals(truth, platform.follow(p, truth.body, held, start, time, truth.maps))
+        return self._signals(
+            truth, platform.follow(truth.built, truth.body, held, start, time, truth.maps)
+        )
 
     def _signals(self, truth: Truth, motion: platform.Motion) -> dict[str, Array]:
         state, body = motion.state, truth.body

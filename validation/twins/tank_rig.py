@@ -84,7 +84,7 @@ class TankRig:
         start = start.copy()
         start[4] = truth.machine.supply_pressure
         return self._signals(
-            truth, tank.follow(truth.machine, commands["valve_command"], start, time, truth.maps)
+            truth, tank.follow(truth.built, commands["valve_command"], start, time, truth.maps)
         )
 
     def _signals(self, truth: Truth, states: Array) -> dict[str, Array]:

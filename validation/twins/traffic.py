@@ -57,7 +57,7 @@ class RunningBench(BenchRig):
             self.state = bench.balanced(truth.machine, plan.start)
         assert truth.maps is not None
         bench.run(
-            truth.machine,
+            truth.built,
             truth.maps,
             self.clock,
             self.state,

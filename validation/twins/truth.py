@@ -25,6 +25,16 @@ class Truth:
         """Maps of its axes; None for the source's."""
         return None if self.imperfection is None else self.imperfection.maps
 
+    @property
+    def built(self) -> Machine:
+        """The machine with that in its numbers which no rig file can declare."""
+        off = self.imperfection
+        if off is None:
+            return self.machine
+        return self.machine._replace(
+            leak_critical_ratio=off.leak_critical_ratio, leak_exponent=off.leak_exponent
+        )
+
     def value(self, name: str) -> float:
         """A number by name; "extension.gain" is a sensor's."""
         signal, _, field = name.partition(".")

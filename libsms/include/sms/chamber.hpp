@@ -112,11 +112,15 @@ ActuatorFlows<S> actuator_flows(const Params<S>& p, const EdgeFlows<S>& edge, co
   add_flow<S>(flow.lower, -edge.lower_exhaust, lower, outside);
   add_flow(flow.upper, edge.supply_upper, upper, ports.supply);
   add_flow<S>(flow.upper, -edge.upper_exhaust, upper, outside);
-  const S past_piston = p.piston_leakage * (lower.pressure - upper.pressure);
+  const S past_piston = leak_flow(p.piston_leakage, p.piston_leakage_index, lower.pressure, upper.pressure);
   add_flow<S>(flow.lower, -past_piston, lower, upper);
   add_flow(flow.upper, past_piston, upper, lower);
-  add_flow<S>(flow.lower, p.chamber_leakage_lower * (outside.pressure - lower.pressure), lower, outside);
-  add_flow<S>(flow.upper, p.chamber_leakage_upper * (outside.pressure - upper.pressure), upper, outside);
+  const S into_lower =
+      leak_flow(p.chamber_leakage_lower, p.chamber_leakage_index_lower, outside.pressure, lower.pressure);
+  add_flow(flow.lower, into_lower, lower, outside);
+  const S into_upper =
+      leak_flow(p.chamber_leakage_upper, p.chamber_leakage_index_upper, outside.pressure, upper.pressure);
+  add_flow(flow.upper, into_upper, upper, outside);
   return flow;
 }
 

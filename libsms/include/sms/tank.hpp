@@ -88,7 +88,8 @@ void fill_tank(const Tank<S>& tank, const TankState<S>& state, TankTerms<S>& t) 
   add_flow(t.flow, t.feed, t.air, supply);
   t.flow.in_heat *= S(1) + p.tank_inflow_heat_change;
   add_flow<S>(t.flow, -t.vent, t.air, outside);
-  add_flow<S>(t.flow, p.chamber_leakage_lower * (outside.pressure - t.air.pressure), t.air, outside);
+  const S leak = leak_flow(p.chamber_leakage_lower, p.chamber_leakage_index_lower, outside.pressure, t.air.pressure);
+  add_flow(t.flow, leak, t.air, outside);
 }
 
 template <typename S>

@@ -27,8 +27,8 @@
 // The tables' flow is not exact, and no two of the four metering edges are alike: flow_map_feed_lower_1.., vent_lower,
 // feed_upper and vent_upper are its relative error over each at some openings (map_error.hpp).
 //
-// Effects, absent until data switches them on: valve_leakage (a labyrinth past the lands on all four edges: the ISO law
-// with b = 0 and m = 2, sqrt(p1^2 - p2^2)), dead_band_width, exhaust_restriction.
+// Effects, absent until data switches them on: valve_leakage (a gap past the lands on all four edges: the ISO law, at
+// first of a labyrinth, with b = 0 and m = 2, sqrt(p1^2 - p2^2)), dead_band_width, exhaust_restriction.
 #pragma once
 
 #include "sms/effect.hpp"
@@ -173,7 +173,7 @@ S edge_flow(const Params<S>& p, ValveLaw law, const IsoFlow<S>& iso, const S& ar
 // The gap past the lands, open at any command.
 template <typename S>
 IsoFlow<S> valve_gap(const Params<S>& p) {
-  return {p.valve_leakage, p.leakage_critical_ratio, S(2)};
+  return {p.valve_leakage, p.leakage_critical_ratio, p.leakage_index};
 }
 
 template <typename S>

@@ -6,6 +6,6 @@
 
 /* Number of the C ABI. It grows with every change of a struct, an enum or a function of the headers for C that a program
  * compiled before would misread; `./dev lint` compares them with libsms/abi/. */
-#define SMS_ABI 5
+#define SMS_ABI 6
 
 #endif

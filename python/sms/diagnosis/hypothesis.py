@@ -123,9 +123,14 @@ class Fitted:
         """Residuals or sensitivities (rows, ...) of the records it was fitted to, as independent as noise."""
         return values if self.discrepancy is None else self.discrepancy.whitener.whiten(values)
 
-    def standard_error(self, name: str) -> float:
-        k = list(self.hypothesis.free).index(name)
-        return float(np.sqrt(max(self.covariance[k, k], 0.0)))
+    def standard_error(self, name: str, held: Sequence[str] = ()) -> float:
+        """Of a free parameter; held: were these others known."""
+        free = list(self.hypothesis.free)
+        k, others = free.index(name), [free.index(n) for n in held]
+        between = self.covariance[k, others]
+        known = self.covariance[np.ix_(others, others)]
+        variance = self.covariance[k, k] - between @ np.linalg.pinv(known, hermitian=True) @ between
+        return float(np.sqrt(max(variance, 0.0)))
 
     @property
     def movable(self) -> list[str]:

@@ -64,7 +64,9 @@ def _listed(parameters: Sequence[ParameterValue], sizes: Sequence[str]) -> str:
 def _amount(p: ParameterValue, shifted: bool) -> str:
     if shifted:
         return format_change(p.old_value, p.value, p.standard_error, p.unit, p.name)
-    return format_estimate(p.value, p.standard_error, p.unit, p.name, signed=p.unit == "1")
+    return format_estimate(
+        p.value, p.standard_error, p.unit, p.name, signed=p.unit == "1" and p.old_value == 0.0
+    )
 
 
 def explained(cause: Cause) -> str:

@@ -44,8 +44,18 @@ class Laws(NamedTuple):
 
 @compiled
 def leak_flow(p: Numbers, p1: float, t1: float, p2: float, t2: float) -> float:
-    """kg/s from 1 to 2 through the gap past a land: b = 0, m = 2."""
-    return edge_flow(p, 1, (p.valve_leakage, 0.0, 2.0), 0.0, p1, t1, p2, t2)
+    """kg/s from 1 to 2 through the gap past a land."""
+    gap = (p.valve_leakage, p.leakage_critical_ratio, p.leakage_index)
+    return edge_flow(p, 1, gap, 0.0, p1, t1, p2, t2)
+
+
+@compiled
+def seal_flow(conductance: float, index: float, p1: float, p2: float) -> float:
+    """kg/s from 1 to 2 past a seal: g p/2 (2 - 2 r)^n from the higher pressure p, proportional above r = 0.999."""
+    high, low = max(p1, p2), min(p1, p2)
+    drop = 2.0 * (1.0 - low / high)
+    share = drop**index if drop > 2e-3 else drop * 2e-3 ** (index - 1.0)
+    return 0.5 * conductance * high * share * (1.0 if p1 > p2 else -1.0)
 
 
 @compiled
@@ -124,16 +134,18 @@ def air_rates(
     ta, pe = p.air_temperature, p.ambient_pressure
     pl, tl, pu, tu = y[P_LOWER], y[T_LOWER], y[P_UPPER], y[T_UPPER]
     sl, le, su, ue = valve_flows(p, laws, map_, y)
-    past = p.piston_leakage * (pl - pu)
+    past = seal_flow(p.piston_leakage, p.piston_leakage_index, pl, pu)
     lower, upper = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     lower = border(sl, tl, ta, lower)
     lower = border(-le, tl, ta, lower)
     lower = border(-past, tl, tu, lower)
-    lower = border(p.chamber_leakage_lower * (pe - pl), tl, ta, lower)
+    leak = seal_flow(p.chamber_leakage_lower, p.chamber_leakage_index_lower, pe, pl)
+    lower = border(leak, tl, ta, lower)
     upper = border(su, tu, ta, upper)
     upper = border(-ue, tu, ta, upper)
     upper = border(past, tu, tl, upper)
-    upper = border(p.chamber_leakage_upper * (pe - pu), tu, ta, upper)
+    leak = seal_flow(p.chamber_leakage_upper, p.chamber_leakage_index_upper, pe, pu)
+    upper = border(leak, tu, ta, upper)
 
     bore, rod = 0.25 * pi * p.bore_diameter**2, 0.25 * pi * p.rod_diameter**2
     tube, left = 0.25 * pi * p.tube_diameter**2 * p.tube_length, p.stroke - x

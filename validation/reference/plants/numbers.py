@@ -56,6 +56,8 @@ class Numbers(NamedTuple):
     discharge_coefficient: float
     mass_flow_gain: float
     valve_leakage: float
+    leakage_critical_ratio: float
+    leakage_index: float
     dead_band_change: float
     exhaust_flow_change: float
     dead_volume_lower: float
@@ -66,8 +68,11 @@ class Numbers(NamedTuple):
     heat_transfer_coefficient: float
     wall_temperature: float
     piston_leakage: float
+    piston_leakage_index: float
     chamber_leakage_lower: float
+    chamber_leakage_index_lower: float
     chamber_leakage_upper: float
+    chamber_leakage_index_upper: float
     tube_length: float
     tube_diameter: float
     tube_loss_factor: float

@@ -115,10 +115,15 @@ def _takes_most(trial: Trial, current: Fitted, data: Data) -> bool:
 
 
 def beyond_doubt(effect: Effect, found: Fitted, data: Data) -> bool:
-    """Whether its size is beyond what is declared of it by five of the standard errors that are stated."""
+    """Whether its size is beyond what is declared of it by five standard errors.
+
+    Those of the size where what shapes it stays as it fits best: without the effect that has no value (Davies,
+    Biometrika 64, 1977), and the size of a leak of any law is less certain than that there is one.
+    """
     name = effect.parameters[0]
     moved = abs(found.params[name] - found.hypothesis.start[name])
-    error = found.standard_error(name)
+    shapes = [] if effect.sizes is None else list(effect.parameters[effect.sizes :])
+    error = found.standard_error(name, held=shapes)
     return moved - data.rig.declared(name).uncertainty > SURE * error > 0.0
 
 
