@@ -66,7 +66,10 @@ def test_every_command_of_the_tutorial(tmp_path: Path) -> None:
     diagnosis = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
     assert diagnosis["verdict"] == "cause"
     (cause,) = diagnosis["causes"]
-    assert [p["name"] for p in cause["parameters"]] == ["chamber_leakage_lower:2"]
+    assert [p["name"] for p in cause["parameters"]] == [
+        "chamber_leakage_lower:2",
+        "chamber_leakage_index_lower:2",
+    ]
     assert cause["parameters"][0]["value"] == pytest.approx(2e-9, rel=0.1)
 
 

@@ -152,7 +152,7 @@ def test_a_leak_of_one_leg_is_named_with_its_size(tmp_path: Path) -> None:
     assert answer.verdict == "cause"
     (cause,) = answer.causes
     assert (cause.effect, cause.signal) == ("fitting_leakage", "lower, leg 2")
-    (found,) = cause.parameters
+    found, _ = cause.parameters
     assert found.value == pytest.approx(leak, abs=max(3.0 * found.standard_error, 0.05 * leak))
     assert answer.hidden is not None
     assert answer.hidden.equation.startswith("flow of the lower chamber")

@@ -95,5 +95,6 @@ def test_a_leak_in_clean_records_is_found(tmp_path: Path) -> None:
     answer = diagnose(clean_records(tmp_path))
     (cause,) = answer.causes
     assert (cause.effect, cause.signal) == ("fitting_leakage", "lower")
-    (leak,) = cause.parameters
-    assert abs(leak.value - LEAK) < 2.0 * leak.standard_error < 0.4 * LEAK
+    leak, _ = cause.parameters
+    # Its law is unknown, and these motions hardly tell it.
+    assert abs(leak.value - LEAK) < 2.0 * leak.standard_error < 0.6 * LEAK

@@ -51,9 +51,11 @@ def test_further_parameters_of_a_cause_are_named_beside_its_size() -> None:
         (
             ParameterValue("valve_leakage", 3.66e-10, 0.69e-10, "m^3/(s Pa)", 0.0),
             ParameterValue("leakage_critical_ratio", 0.0, 0.0, "1", 0.0),
+            ParameterValue("leakage_index", 1.1, 0.21, "1", 2.0),
         ),
         1e-6, {}, "", 1.0,
     )  # fmt: skip
     assert explained(leak) == (
-        "leakage past the valve spool (0.0366 ± 0.0069 l/s per bar, leakage critical ratio 0)"
+        "leakage past the valve spool (0.0366 ± 0.0069 l/s per bar, leakage critical ratio 0, "
+        "leakage index 1.10 ± 0.21)"
     )

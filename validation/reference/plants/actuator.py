@@ -55,7 +55,7 @@ def seal_flow(conductance: float, index: float, p1: float, p2: float) -> float:
     high, low = max(p1, p2), min(p1, p2)
     drop = 2.0 * (1.0 - low / high)
     share = drop**index if drop > 2e-3 else drop * 2e-3 ** (index - 1.0)
-    return 0.5 * conductance * high * share * (1.0 if p1 > p2 else -1.0)
+    return float(0.5 * conductance * high * share * (1.0 if p1 > p2 else -1.0))
 
 
 @compiled
