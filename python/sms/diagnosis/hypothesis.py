@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sms import _core
-from sms.arrays import Array, Index
+from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.estimation.block_statistics import (
     covariance_from,
@@ -22,7 +22,13 @@ from sms.estimation.block_statistics import (
 )
 from sms.estimation.discrepancy import Discrepancy
 from sms.estimation.jump_times import with_jump_times
-from sms.estimation.least_squares import MOST_STEPS, Free, Solution, WindowFit
+from sms.estimation.least_squares import (
+    MOST_STEPS,
+    Free,
+    Solution,
+    WindowFit,
+    counted_rows,
+)
 from sms.estimation.nuisance import Joint, Nuisance, pulls
 from sms.estimation.windows import Runs
 from sms.io.rig import Rig
@@ -287,7 +293,7 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
         before = fitted.discrepancy
         if before is None:
             return fitted
-        counted = np.unique(runs.window[counted_rows(fitted)])
+        counted = np.unique(runs.window[counted_rows(fitted.fit)])
         now = before.fitted_to(fitted.fit.residual, counted)
         felt = before.tau > 0.0
         if np.all(np.abs(np.log(now.tau[felt] / before.tau[felt])) < SETTLED):
@@ -301,12 +307,6 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
             may_set_aside=True,
         )
     return fitted
-
-
-def counted_rows(fitted: Fitted) -> Index:
-    """The rows of the windows that a fit has not set aside."""
-    counted = fitted.fit.counted if isinstance(fitted.fit, WindowFit) else None
-    return np.arange(len(fitted.fit.residual)) if counted is None else counted
 
 
 def free_of(hypothesis: Hypothesis) -> list[Free]:
@@ -350,7 +350,7 @@ def _covariance(fitted: Fitted, pull: Array, runs: Runs) -> Array:
                 found.jacobian[:, moved], found.residual, runs.block, known, weight
             )
         return covariance
-    rows = counted_rows(fitted)
+    rows = counted_rows(fitted.fit)
     jacobian, residual = fitted.whiten(found.jacobian)[rows], fitted.whiten(found.residual)[rows]
     block = runs.block[rows]
     bread = covariance_from(jacobian.T @ jacobian + pull.T @ pull)

@@ -13,13 +13,13 @@ from sms.diagnosis.hypothesis import (
     Fitted,
     Healthy,
     Hypothesis,
-    counted_rows,
     fit,
     fit_with_discrepancy,
     weights_of,
 )
 from sms.estimation.block_statistics import covariance_from, scatter_of_scores
 from sms.estimation.jump_times import with_jump_times
+from sms.estimation.least_squares import counted_rows
 from sms.estimation.nuisance import Joint
 from sms.estimation.windows import Runs
 
@@ -47,7 +47,7 @@ def from_reference(hypothesis: Hypothesis, data: Data) -> tuple[Hypothesis, Data
     runs = with_jump_times(data.reference, h.start)
     runs = with_jump_times(data.reference, _fitted_when_well(h, runs).params)
     fitted = _fitted_when_well(h, runs)
-    rows = counted_rows(fitted)
+    rows = counted_rows(fitted.fit)
     residual = fitted.whiten(fitted.fit.residual)
     jacobian = fitted.whiten(fitted.fit.jacobian)[rows]
     pull = weights_of(h, list(h.free))

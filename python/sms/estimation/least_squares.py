@@ -89,6 +89,12 @@ class Free:
         return max(abs(self.centre), 1e-3 * (self.upper - self.lower))
 
 
+def counted_rows(fit: Solution) -> Index:
+    """The rows of the windows that a fit has not set aside."""
+    counted = fit.counted if isinstance(fit, WindowFit) else None
+    return np.arange(len(fit.residual)) if counted is None else counted
+
+
 def changed(params: _core.Params, names: list[str], values: Array) -> _core.Params:
     """The same parameters but for some."""
     copy = params.copy()
