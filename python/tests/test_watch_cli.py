@@ -163,7 +163,8 @@ def test_a_healthy_bench_raises_no_alarm_and_a_leak_is_diagnosed(day: Path, tmp_
     well = run(*words, "--play", str(day / "well.csv"), "--out", str(tmp_path / "well"))
     assert "no alarms" in well.output
     assert not events(tmp_path / "well", "alarm")
-    run(*words, "--play", str(day / "ill.csv"), "--out", str(tmp_path / "ill"))
+    ill = ("--play", str(day / "ill.csv"), "--diagnose-after", "30", "--out", str(tmp_path / "ill"))
+    run(*words, *ill)
     (verdict,) = events(tmp_path / "ill", "diagnosed")
     assert verdict["causes"] == ["fitting_leakage of lower"]
     assert not (tmp_path / "ill" / "rows").exists()
