@@ -20,6 +20,8 @@
 //
 //   z = z* - R^-1 Q' (de/dtheta) (theta - theta*)
 //
+// That may have been a Jacobian of a few parameters; for the others this product is that of the last that had them.
+//
 // The slopes de/dz that were found there hold nearby too, and a residual alone is then one simulation or two in plain
 // numbers (the chord method). They are worked out again where they promise more than they keep, or a window is badly off.
 //
@@ -179,8 +181,8 @@ class ShootingProblem : public ProblemOf<typename Plant::template Machine<double
   // Where searches begin, which is not what they find.
   mutable std::vector<Window> windows_;
   mutable Machine<double> anchor_{}, last_{};    // parameters of the last Jacobian, of the last evaluation
-  mutable std::vector<int> followed_;            // parameters of the last Jacobian
-  mutable std::vector<Eigen::MatrixXd> follow_;  // how each window's start moves with them
+  mutable std::vector<int> followed_;            // parameters of all Jacobians
+  mutable std::vector<Eigen::MatrixXd> follow_;  // how each window's start moves with them, by the last that had them
   mutable std::vector<Eigen::MatrixXd> slopes_;  // de/dz of each window where it is begun; empty before the first
   mutable std::vector<Eigen::VectorXd> found_;   // by the last evaluation
   mutable std::vector<Eigen::VectorXd> best_;    // of all evaluations

@@ -62,17 +62,19 @@ bool follow(const WindowSimulation& window, const Eigen::MatrixXd& slopes, const
 
 // A state is tried in plain numbers, which are ten times cheaper; slopes are worked out where the search goes on from.
 Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
-           const WindowOptions& options, int most_steps) {
+           const WindowOptions& options, int most_steps, double to_beat) {
   Shot shot;
   shot.start = from;
   Eigen::VectorXd tried_residual;
-  double damping = 1e-6;
+  constexpr double kUndamped = 1e-6, kHeldBack = 1.01;  // even then a step is held near where it begins (start_step)
+  double damping = kUndamped;
   for (int k = 0; k < most_steps; ++k) {
     window.find_slopes(&shot);
     const StartStep step = start_step(shot.slopes, shot.residual, scale, damping);
     const double cost = shot.residual.squaredNorm();
     const double enough = options.enough(cost);
-    if (!(step.promised > enough)) {
+    const bool in_vain = damping <= kUndamped && !(cost - kHeldBack * step.promised < to_beat);
+    if (!(step.promised > enough) || in_vain) {
       break;
     }
     const Eigen::VectorXd tried = shot.start + step.move;

@@ -29,9 +29,10 @@ constexpr double kBadlyOff = 4.0;
 bool follow(const WindowSimulation& window, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& scale,
             const WindowOptions& options, Shot* shot);
 
-// Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions).
+// Levenberg-Marquardt over the initial state, until a step gains next to nothing (WindowOptions); or until not even the
+// linearised problem promises to leave less than `to_beat` of chi-square.
 Shot shoot(const WindowSimulation& window, const Eigen::VectorXd& from, const Eigen::VectorXd& scale,
-           const WindowOptions& options, int most_steps = 12);
+           const WindowOptions& options, int most_steps = 12, double to_beat = std::numeric_limits<double>::infinity());
 
 // Derivatives of the rows, a direction a column.
 void columns_of(const std::vector<ParameterJet>& jets, Eigen::MatrixXd* columns);
@@ -73,8 +74,17 @@ template <typename Plant>
 void ShootingProblem<Plant>::evaluate(const Machine<double>& params, const std::vector<int>& free,
                                       Eigen::VectorXd* residual, RowMatrix* jacobian) const {
   residual->resize(rows_);
+  std::vector<int> followed = followed_;
+  std::vector<Eigen::Index> column;  // of each free parameter among those that are followed
   if (jacobian != nullptr) {
     jacobian->resize(rows_, static_cast<Eigen::Index>(free.size()));
+    for (const int parameter : free) {
+      const auto at = std::find(followed.begin(), followed.end(), parameter);
+      column.push_back(at - followed.begin());
+      if (at == followed.end()) {
+        followed.push_back(parameter);
+      }
+    }
   }
   in_parallel(options_.threads, windows_.size(), [&](std::size_t k) {
     const Window w = begun(params, k);
@@ -83,14 +93,21 @@ void ShootingProblem<Plant>::evaluate(const Machine<double>& params, const std::
     note(shot, w, k);
     if (jacobian != nullptr) {
       Simulated(*this, params, w).find_slopes(&shot);
-      follow_[k] = differentiate(params, free, w, shot, jacobian);
+      Eigen::MatrixXd moves = differentiate(params, free, w, shot, jacobian);
+      if (!moves.allFinite()) {
+        moves.setZero();  // of a simulation that runs away: they would outlast it
+      }
+      follow_[k].conservativeResize(kStart, static_cast<Eigen::Index>(followed.size()));
+      for (std::size_t i = 0; i < column.size(); ++i) {
+        follow_[k].col(column[i]) = moves.col(static_cast<Eigen::Index>(i));
+      }
       anchor(shot, k);
     }
   });
   last_ = params;
   if (jacobian != nullptr) {
     anchor_ = params;
-    followed_ = free;
+    followed_ = std::move(followed);
   }
 }
 
@@ -291,8 +308,9 @@ Shot ShootingProblem<Plant>::search(const Machine<double>& params, const Window&
   constexpr double kBetter = 0.5;
   Shot shot = shoot(params, w, k, true);
   const auto try_from = [&](const Eigen::VectorXd& from) {
-    Shot other = estimation::shoot(Simulated(*this, params, w), from, start_scales(), options_, kMostSteps);
-    if (other.residual.squaredNorm() < shot.residual.squaredNorm()) {
+    const double here = shot.residual.squaredNorm();
+    Shot other = estimation::shoot(Simulated(*this, params, w), from, start_scales(), options_, kMostSteps, here);
+    if (other.residual.squaredNorm() < here) {
       shot = std::move(other);
     }
   };

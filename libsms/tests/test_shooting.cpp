@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "estimation/bench_plant.hpp"
+#include "estimation/shooting_search.hpp"
 #include "random_cases.hpp"
 
 namespace est = sms::estimation;
@@ -250,6 +251,7 @@ TEST_CASE("after a Jacobian a search begins where the best initial states have m
   moved.compression_heat_ratio += random.uniform(-0.01, 0.01);
   moved.valve_centre += random.uniform(-0.01, 0.01);
   auto stays = problem_of(p, 620, 1e12), follows = problem_of(p, 620, 1e12);  // no step is worth being made
+  auto in_parts = problem_of(p, 620, 1e12);
   const auto searches = problem_of(p, 620, 1e-9);
   Eigen::VectorXd still, residual, best;
   est::RowMatrix jacobian;
@@ -261,6 +263,43 @@ TEST_CASE("after a Jacobian a search begins where the best initial states have m
   searches.evaluate(moved, {}, &best, nullptr);
   CHECK(still.squaredNorm() > best.squaredNorm() + 1.0);
   CHECK(residual.squaredNorm() - best.squaredNorm() < 0.1 * (still.squaredNorm() - best.squaredNorm()));
+
+  // One parameter after another: the others move the initial states as the last Jacobian had it that had them.
+  in_parts.settle(p);
+  Eigen::VectorXd of_parts;
+  for (const int parameter : free) {
+    in_parts.evaluate(p, {parameter}, &of_parts, &jacobian);
+  }
+  in_parts.evaluate(moved, {}, &of_parts, nullptr);
+  CHECK((of_parts - residual).norm() <= 1e-9 * residual.norm());
+}
+
+TEST_CASE("a search that cannot beat what there is already ends at once") {
+  // Straight: residual = start - (3, 4) and a last row of 2 that nothing changes, so that the least is 4.
+  struct Straight : est::WindowSimulation {
+    mutable int simulated = 0;
+    void find_residual(const Eigen::VectorXd& start, Eigen::VectorXd* residual) const override {
+      ++simulated;
+      *residual = Eigen::Vector3d(start[0] - 3.0, start[1] - 4.0, 2.0);
+    }
+    void find_slopes(est::Shot* shot) const override {
+      find_residual(shot->start, &shot->residual);
+      shot->slopes = Eigen::MatrixXd::Identity(3, 2);
+      shot->has_slopes = true;
+    }
+  };
+  const Eigen::VectorXd from = Eigen::Vector2d(10.0, -10.0), scale = Eigen::Vector2d::Ones();
+  const auto left = [&](double to_beat, int* simulated) {
+    const Straight window;
+    const est::Shot shot = est::shoot(window, from, scale, {}, 12, to_beat);
+    *simulated = window.simulated;
+    return shot.residual.squaredNorm();
+  };
+  int simulated = 0;
+  CHECK(left(1.0, &simulated) > 200.0);
+  CHECK(simulated == 1);
+  CHECK(left(4.1, &simulated) < 4.1);
+  CHECK(simulated > 1);
 }
 
 TEST_CASE("slopes of the last Jacobian lead to initial states as good as their own do") {
