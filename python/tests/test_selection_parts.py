@@ -139,6 +139,33 @@ def test_of_a_crowd_those_stay_that_are_hardly_worse(
     assert "".join(sorted(m.effect.id for m in members)) == class_of
 
 
+@pytest.mark.parametrize(
+    ("on_identify", "in_its_own_signal", "asked"),
+    [
+        (0.02, 0.02, False),  # takes next to nothing where it was fitted
+        (0.5, 0.02, True),
+        (0.05, 0.6, True),  # what its equation gives alone, and hardly seen beside the others
+        (-0.3, -0.3, False),
+    ],
+)
+def test_what_takes_nothing_where_it_was_fitted_is_not_fitted_again_elsewhere(
+    on_identify: float, in_its_own_signal: float, asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = Left(np.full((8, 2), 11.0), np.full((3, 2), 11.0))
+    own = 1.0 + 10.0 * (1.0 - in_its_own_signal)
+    other = 1.0 + 10.0 * (1.0 - (2.0 * on_identify - in_its_own_signal))
+    after = np.tile([other, own], (8, 1))
+    monkeypatch.setattr(Left, "where_fitted", lambda self, fitted, data: Left(after, self.validate))
+    monkeypatch.setattr(judgement, "channel_of_its_own", lambda effect, data: 1)
+    trial = Trial(cast(Any, "effect"), cast(Any, "with the effect"), 1e-9)
+    data = cast(Any, SimpleNamespace(healthy=None))
+    objection = judgement._no_help(trial, cast(Any, "without"), data, before, 0.5, 10)
+    assert trial.seen_share == pytest.approx(on_identify)
+    assert (trial.lower > 0.0) == (on_identify > 0.0)
+    said = f"takes {100.0 * on_identify:.0f} % of what is left on the identification records"
+    assert objection == ("" if asked else said.replace("-", "−"))
+
+
 def test_pairs_are_filled_up_with_what_was_not_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a lung with two wrong settings one promised nothing alone, and nothing beside the best candidate either."""
     current = cast(Any, "model as it stands")

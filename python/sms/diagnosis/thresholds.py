@@ -90,6 +90,9 @@ PAIR_STEPS = 4
 """Jacobians in the fit of two effects: they have farther to go than one. Run time."""
 LEAST_SHARE = 0.5
 """Of what is left beyond the noise: what a cause must take. Judgement: most of it."""
+HELPS = 0.1
+"""Of the same on the records that an effect was fitted to: with less it is not asked about on the validation records,
+where it would have to take seven times as much to stand. Run time."""
 NEARLY_ALL = 0.85
 """The same where what is left is within what is tolerated. Judgement: half of so small an error is imitated
 by many effects, nearly all of it hardly by any."""

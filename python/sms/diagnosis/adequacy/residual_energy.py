@@ -6,7 +6,7 @@ machine slides would outweigh all others in a sum of squares, and it says no mor
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -52,6 +52,10 @@ class Left:
         models = (data.identify, fitted), (data.validate, refitted(fitted, data))
         identify, validate = (_left(data, runs, model) for runs, model in models)
         return cls(identify, validate, data.healthy is not None)
+
+    def where_fitted(self, fitted: Fitted, data: Data) -> Left:
+        """By another model on the fitted records; on the validation records what this one leaves."""
+        return replace(self, identify=_left(data, data.identify, fitted))
 
     absolute: bool = False
     """Whether the unit is what the healthy machine's model leaves."""
@@ -104,18 +108,12 @@ def taken_beyond_floor(before: Fitted, after: Fitted, data: Data) -> tuple[float
     One floor for both: what changes within `kind.short`, and the declared noise at least. What a converter's steps add
     to the declared noise is left by every model.
     """
-    models = (
-        (data.identify, (before, after)),
-        (
-            data.validate,
-            (refitted(before, data), refitted(after, data)),
-        ),
-    )
-    identify, validate = (_taken_beyond_floor(runs, *pair) for runs, pair in models)
-    return identify, validate
+    seen = seen_beyond_floor(before, after, data.identify)
+    return seen, seen_beyond_floor(refitted(before, data), refitted(after, data), data.validate)
 
 
-def _taken_beyond_floor(runs: Runs, before: Fitted, after: Fitted) -> float:
+def seen_beyond_floor(before: Fitted, after: Fitted, runs: Runs) -> float:
+    """The same share on the records that both were fitted to."""
     residuals = before.fit.residual, after.fit.residual
     floor = np.maximum(np.minimum(*(runs.floor(r) for r in residuals)), 1.0)
     was, now = (

@@ -42,8 +42,8 @@ class Trial:
     effect: Effect
     fitted: Fitted
     p_value: float
-    squared: Array
-    """(rows,) squared residuals on the validate records."""
+    squared: Array = field(default_factory=lambda: np.empty(0))
+    """(rows,) squared residuals on the validate records, where rivals are compared by them (validation.py)."""
     by_step: float = 0.0
     """By how much the best finite step lowers the logarithms of what is left on an excerpt."""
     gain: float = 0.0
@@ -51,8 +51,6 @@ class Trial:
     similarity: dict[str, float] = field(default_factory=dict)
     accepted: bool = False
     reason: str = ""
-    identified: Array = field(default_factory=lambda: np.empty(0))
-    """(rows,) squared residuals on the identify records, where both count in the comparison of rivals."""
     support: float = 0.0
     """Share of resamples of the windows or strokes in which it is the best of its round."""
     seen_share: float = 0.0

@@ -12,7 +12,13 @@ import numpy as np
 from scipy.stats import chi2, wilcoxon
 
 from sms.arrays import Array
-from sms.diagnosis.adequacy.residual_energy import ROLES, Left, Role, taken_beyond_floor
+from sms.diagnosis.adequacy.residual_energy import (
+    ROLES,
+    Left,
+    Role,
+    seen_beyond_floor,
+    taken_beyond_floor,
+)
 from sms.diagnosis.adequacy.systematic_error import generalised
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, Healthy
@@ -21,6 +27,7 @@ from sms.diagnosis.selection import cross_validation
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.outcome import Round
 from sms.diagnosis.thresholds import (
+    HELPS,
     LEAST_SHARE,
     MOST_MEMBERS,
     SIGNIFICANT,
@@ -58,6 +65,9 @@ def judge(
     for trial in trials:
         if trial.fitted is current:
             continue
+        if objection := _no_help(trial, current, data, before, needed, tried):
+            trial.reason = objection
+            continue
         after = Left.by(trial.fitted, data)
         trial.lower = float((before.by_window - after.by_window).sum())
         by_score = trial.p_value
@@ -86,6 +96,32 @@ def judge(
         trial.accepted = not trial.reason
     if needed > LEAST_SHARE:
         _accept_significant([t for t in trials if t.fitted is not current], current, data)
+
+
+def _no_help(
+    trial: Trial, current: Fitted, data: Data, before: Left, needed: float, tried: int
+) -> str:
+    """That it takes next to nothing of what is left where it was fitted, if so. It is not asked about on the validation
+    records then, where what is known would have to be fitted again: that is most effects of most rounds.
+
+    With records of the healthy machine the likelihood of the fitted records decides that.
+    """
+    after = before.where_fitted(trial.fitted, data)
+    trial.lower = float((before.by_window - after.by_window).sum())
+    if data.healthy is not None:
+        trial.p_value = _chance_by_likelihood(trial, before, after, tried, data.healthy)
+        return _improbable(trial)
+    shares = [1.0 - after.excess("identify") / max(before.excess("identify"), 1e-12)]
+    channel = channel_of_its_own(trial.effect, data)
+    if channel is not None:
+        was, now = before.of(channel), after.of(channel)
+        shares.append(1.0 - now.excess("identify") / max(was.excess("identify"), 1e-12))
+    if needed > LEAST_SHARE:
+        shares.append(seen_beyond_floor(current, trial.fitted, data.identify))
+    trial.seen_share = shares[0]
+    if max(shares) >= HELPS:
+        return ""
+    return f"takes {_percent(trial.seen_share)} of what is left on the identification records"
 
 
 def _accept_significant(fitted: Sequence[Trial], current: Fitted, data: Data) -> None:
@@ -163,8 +199,16 @@ def _by_likelihood(
     again = (weights @ (before.validate - after.validate)).mean(axis=1)
     low, high = np.clip(interval(again / beyond[1]), -1.0, 1.0)
     trial.gain_interval = float(low), float(high)
-    ratio = max(taken[0], 0.0) * trial.identified.size / healthy.inflation
-    trial.p_value = min(1.0, tried * float(chi2.sf(ratio, len(trial.effect.parameters))))
+    trial.p_value = _chance_by_likelihood(trial, before, after, tried, healthy)
+
+
+def _chance_by_likelihood(
+    trial: Trial, before: Left, after: Left, tried: int, healthy: Healthy
+) -> float:
+    """That chance takes so much of the fitted records, for one of so many effects."""
+    taken = max(float(np.mean(before.identify - after.identify)), 0.0)
+    ratio = taken * trial.fitted.fit.residual.size / healthy.inflation
+    return min(1.0, tried * float(chi2.sf(ratio, len(trial.effect.parameters))))
 
 
 def _contradicted(trial: Trial, current: Fitted, data: Data, rng: np.random.Generator) -> str:
@@ -219,10 +263,16 @@ def _untenable(trial: Trial, data: Data, few: bool = False) -> str:
 
 def _by_chance(trial: Trial, few: bool = False) -> str:
     """That it may be chance that it takes what it takes, if so. few: as above."""
-    if trial.p_value > SIGNIFICANT:
-        return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
+    if reason := _improbable(trial):
+        return reason
     if trial.gain_interval[0] <= 0.0 and not (trial.cross_validated or few):
         return f"{_taken(trial)}, where it may be chance"
+    return ""
+
+
+def _improbable(trial: Trial) -> str:
+    if trial.p_value > SIGNIFICANT:
+        return f"may be chance (p = {trial.p_value:.2g} among all that were tried)"
     return ""
 
 
@@ -246,13 +296,14 @@ def _leaves_much(trial: Trial, needed: float, telling: Sequence[Role]) -> str:
 
 
 def _taken(trial: Trial) -> str:
-    seen, unseen = (
-        f"{100.0 * share:.0f}".replace("-", "−") for share in (trial.seen_share, trial.gain)
-    )
     return (
-        f"takes {seen} % of what is left on the identification records and "
-        f"{unseen} % on the validation records"
+        f"takes {_percent(trial.seen_share)} of what is left on the identification records and "
+        f"{_percent(trial.gain)} on the validation records"
     )
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.0f} %".replace("-", "−")
 
 
 def ambiguity_group(trials: Sequence[Trial], current: Fitted, data: Data) -> list[Trial]:

@@ -73,8 +73,7 @@ def _rivals(
     found = []
     for effect, fitted in beside.items():
         if effect is member or _cosine(changes[member], changes[effect]) > TWINS:
-            squared = residual_of(data.validate, fitted.params) ** 2
-            found.append(Trial(effect, fitted, 1.0, squared, identified=fitted.fit.residual**2))
+            found.append(Trial(effect, fitted, 1.0))
     return found
 
 

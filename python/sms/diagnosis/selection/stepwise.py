@@ -32,7 +32,7 @@ from sms.diagnosis.adequacy.residual_energy import (
 )
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
-from sms.diagnosis.other_records import looked_at_again, refitted
+from sms.diagnosis.other_records import looked_at_again
 from sms.diagnosis.selection.backward_elimination import (
     backward_elimination,
     beyond_plausible,
@@ -91,21 +91,10 @@ def try_effects(
     scores = score_effects(current, data, effects, rng)
     first, steps = _promising(current, data, effects, scores, nearby)
     current = looked_at_again(current, data)
-    before = refitted(current, data).fit.residual ** 2
     trials = []
     for k, effect in enumerate(effects):
-        by_score = float(scores.p_value[k])
-        trial = Trial(effect, current, by_score, before, identified=current.fit.residual**2)
-        if k in first:
-            fitted = first[k]
-            trial = Trial(
-                effect,
-                fitted,
-                by_score,
-                refitted(fitted, data).fit.residual ** 2,
-                identified=fitted.fit.residual**2,
-            )
-        else:
+        trial = Trial(effect, first.get(k, current), float(scores.p_value[k]))
+        if k not in first:
             trial.reason = "promises less than others of this round, by slope and by finite steps"
         trial.by_step = steps[k].gain
         trials.append(trial)
@@ -136,8 +125,6 @@ def try_more(current: Fitted, data: Data, trials: Sequence[Trial]) -> list[Trial
     )
     for k, fitted in found.items():
         rest[k].fitted, rest[k].reason = fitted, ""
-        rest[k].squared = refitted(fitted, data).fit.residual ** 2
-        rest[k].identified = fitted.fit.residual**2
     return [rest[k] for k in found]
 
 
