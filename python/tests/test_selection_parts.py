@@ -140,27 +140,32 @@ def test_of_a_crowd_those_stay_that_are_hardly_worse(
 
 
 @pytest.mark.parametrize(
-    ("on_identify", "in_its_own_signal", "asked"),
+    ("left", "on_identify", "in_its_own_signal", "asked"),
     [
-        (0.02, 0.02, False),  # takes next to nothing where it was fitted
-        (0.5, 0.02, True),
-        (0.05, 0.6, True),  # what its equation gives alone, and hardly seen beside the others
-        (-0.3, -0.3, False),
+        (10.0, 0.02, 0.02, False),  # takes next to nothing where it was fitted
+        (10.0, 0.5, 0.02, True),
+        (10.0, 0.05, 0.6, True),  # what its equation gives alone, and hardly seen beside the others
+        (10.0, -0.3, -0.3, False),
+        (1e-3, 0.02, 0.02, True),  # of hardly anything
     ],
 )
 def test_what_takes_nothing_where_it_was_fitted_is_not_fitted_again_elsewhere(
-    on_identify: float, in_its_own_signal: float, asked: bool, monkeypatch: pytest.MonkeyPatch
+    left: float,
+    on_identify: float,
+    in_its_own_signal: float,
+    asked: bool,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    before = Left(np.full((8, 2), 11.0), np.full((3, 2), 11.0))
-    own = 1.0 + 10.0 * (1.0 - in_its_own_signal)
-    other = 1.0 + 10.0 * (1.0 - (2.0 * on_identify - in_its_own_signal))
+    before = Left(np.full((8, 2), 1.0 + left), np.full((3, 2), 11.0))
+    own = 1.0 + left * (1.0 - in_its_own_signal)
+    other = 1.0 + left * (1.0 - (2.0 * on_identify - in_its_own_signal))
     after = np.tile([other, own], (8, 1))
     monkeypatch.setattr(Left, "where_fitted", lambda self, fitted, data: Left(after, self.validate))
     monkeypatch.setattr(judgement, "channel_of_its_own", lambda effect, data: 1)
     trial = Trial(cast(Any, "effect"), cast(Any, "with the effect"), 1e-9)
-    data = cast(Any, SimpleNamespace(healthy=None))
+    runs = SimpleNamespace(kind=SimpleNamespace(practically_significant=(0.1, 1.0)))
+    data = cast(Any, SimpleNamespace(healthy=None, identify=runs))
     objection = judgement._no_help(trial, cast(Any, "without"), data, before, 0.5, 10)
-    assert trial.seen_share == pytest.approx(on_identify)
     assert (trial.lower > 0.0) == (on_identify > 0.0)
     said = f"takes {100.0 * on_identify:.0f} % of what is left on the identification records"
     assert objection == ("" if asked else said.replace("-", "−"))

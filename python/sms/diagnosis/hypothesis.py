@@ -250,13 +250,13 @@ def fit(
     nearby: Mapping[str, Array] | None = None,
     discrepancy: Discrepancy | None = None,
     roughly: bool = False,
-    may_set_aside: bool = False,
+    stated: bool = False,
 ) -> Fitted:
     """Least squares over the hypothesis' free parameters, with a covariance that is robust to blocks.
 
     most_steps: Jacobians that are worked out at most. nearby: parameter -> (rows,) change of the residual with it near
-    the initial ones. roughly: of what two specimens of a type differ by, those serve to the end. may_set_aside:
-    windows that do not follow their slopes may be set aside.
+    the initial ones. roughly: of what two specimens of a type differ by, those serve to the end. stated: its values are
+    (fit_windows).
     """
     free = free_of(hypothesis)
     names = [f.name for f in free]
@@ -264,7 +264,7 @@ def fit(
     kept = {n for n in slopes if roughly and common_parameter(n) in SPECIMENS}
     pull = weights_of(hypothesis, names)
     start = initial or hypothesis.start
-    found = runs.fit(start, free, pull, most_steps, slopes, kept, discrepancy, may_set_aside)
+    found = runs.fit(start, free, pull, most_steps, slopes, kept, discrepancy, stated)
     fitted = Fitted(hypothesis, found, np.empty((0, 0)), discrepancy)
     covariance = _covariance(fitted, pull, runs)
     held = np.array(found.at_bound, dtype=bool)
@@ -284,7 +284,7 @@ def fit_with_discrepancy(
     """
     start = initial or hypothesis.start
     now = runs.discrepancy(start, residual_of(runs, start), alike)
-    return settled(fit(hypothesis, runs, start, discrepancy=now, may_set_aside=True), runs)
+    return settled(fit(hypothesis, runs, start, discrepancy=now, stated=True), runs)
 
 
 def settled(fitted: Fitted, runs: Runs) -> Fitted:
@@ -304,7 +304,7 @@ def settled(fitted: Fitted, runs: Runs) -> Fitted:
             fitted.params,
             nearby=fitted.slopes,
             discrepancy=now,
-            may_set_aside=True,
+            stated=True,
         )
     return fitted
 

@@ -78,7 +78,7 @@ def _fitted_when_well(hypothesis: Hypothesis, runs: Runs) -> Fitted:
     fitted = fit_with_discrepancy(hypothesis, runs, alike=True)
     if any(fitted.params[n] != hypothesis.start[n] for n in hypothesis.free):
         return fitted
-    plainly = fit(hypothesis, runs, may_set_aside=True)
+    plainly = fit(hypothesis, runs, stated=True)
     return fit_with_discrepancy(hypothesis, runs, plainly.params, alike=True)
 
 

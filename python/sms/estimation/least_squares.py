@@ -3,7 +3,7 @@
 Gauss-Newton with bounds: each step solves the linearised problem within the bounds exactly (bounded-variable least
 squares, Stark and Parker 1995), shortens it while it does not help, and stops when it promises or gains next to
 nothing. The residuals are in units of the noise, so that is a number: 0.5 of chi-square, and more for a model
-that misses by far more than the noise, whose last digit nobody reads.
+that is only compared with others and misses by far more than the noise.
 
 A window in which a piston breaks away does not follow its slopes: the moment at which it does so has a kink, and where
 the minimum of that window lies on the kink no step that the others ask for gains anything. A fit that may set windows
@@ -31,7 +31,8 @@ from sms.estimation.problem import Problem
 ENOUGH = 0.5
 """Of chi-square, which is about one a row: what a step has to gain to be followed by another."""
 LEAST_SHARE, MOST_SHARE = 1e-4, 1e-2
-"""Of chi-square itself, besides: from a model at the noise to one that misses by ten times its variance."""
+"""Of chi-square itself, besides, of a model that is only compared: from one at the noise to one that misses by ten
+times its variance."""
 AS_PROMISED = 0.5
 """Of the promised gain: with at least as much, the Jacobian is kept for the next step. Run time."""
 SECANTS = 4
@@ -240,13 +241,15 @@ def fit_windows(
 
     pull: (r, free) per unit; each parameter's own if left out. most_steps: Jacobians that are worked out at most.
     nearby: (rows,) sensitivity to each parameter to begin with; those of the parameters in `kept` are never worked out.
-    window: (rows,) which window each row belongs to, if windows that do not follow their slopes may be set aside.
+    window: (rows,) which window each row belongs to, if the values are stated. Windows that do not follow their slopes
+    may then be set aside, and a step is worth ENOUGH, however much is left: of a model that is a little wrong
+    everywhere a share of that is a standard error of a size.
     """
     objective = _Objective(problem, initial, free, pull, window)
     at = objective.begun(objective.start, nearby or {})
     worked_out, converged = int(at.exact), not free
     for _ in range(SECANTS * most_steps if free else 0):
-        little = ENOUGH + _worthless(at.residual, at.slope)
+        little = ENOUGH + (_worthless(at.residual, at.slope) if window is None else 0.0)
         tried, after, gained, promised = _line_search(objective, at, little)
         moved = tried - at.value
         if gained > 0.0:

@@ -87,15 +87,15 @@ class Runs:
         nearby: Mapping[str, Array] | None = None,
         kept: Collection[str] = (),
         discrepancy: Discrepancy | None = None,
-        may_set_aside: bool = False,
+        stated: bool = False,
     ) -> Solution:
         """Least squares over the free parameters; of a simulated rig pulled by rows (r, free), in at most so many
         steps, with sensitivities (rows,) of a model nearby to begin with, of which some are kept, and generalised by
-        the covariance of a discrepancy. may_set_aside: windows that do not follow their slopes may be set aside.
+        the covariance of a discrepancy. stated: its values are (fit_windows).
         """
         if not self.whitened:
             return self.kind.solve(self.problem, initial, free)
-        window = self.window if may_set_aside else None
+        window = self.window if stated else None
         if discrepancy is None:
             return fit_windows(self.problem, initial, free, most_steps, pull, nearby, kept, window)
         root, white = discrepancy.whitener, {}

@@ -64,7 +64,7 @@ def generalised(fitted: Fitted, data: Data) -> Fitted:
     h, runs = fitted.hypothesis, data.identify
     start, allowed = fitted.params, data.allowed(runs)
     if allowed is not None:
-        found = fit(h, runs, start, discrepancy=allowed, may_set_aside=True)
+        found = fit(h, runs, start, discrepancy=allowed, stated=True)
         return with_systematic_error(found, runs)
     of_causes = {n for cause in h.causes for n in cause.parameters}
     known = [n for n in h.known if n not in of_causes]
@@ -85,7 +85,7 @@ def _from_either(
         return float(white @ white) + departure(fitted.hypothesis, params)
 
     def fit_from(params: _core.Params) -> Fitted:
-        return fit(fitted.hypothesis, runs, params, discrepancy=discrepancy, may_set_aside=True)
+        return fit(fitted.hypothesis, runs, params, discrepancy=discrepancy, stated=True)
 
     found = fit_from(start)
     reached = left(found.params, found.fit.residual)

@@ -102,7 +102,8 @@ def _no_help(
     trial: Trial, current: Fitted, data: Data, before: Left, needed: float, tried: int
 ) -> str:
     """That it takes next to nothing of what is left where it was fitted, if so. It is not asked about on the validation
-    records then, where what is known would have to be fitted again: that is most effects of most rounds.
+    records then, where what is known would have to be fitted again: that is most effects of most rounds. Where hardly
+    anything is left of the fitted records, they have no say.
 
     With records of the healthy machine the likelihood of the fitted records decides that.
     """
@@ -111,6 +112,8 @@ def _no_help(
     if data.healthy is not None:
         trial.p_value = _chance_by_likelihood(trial, before, after, tried, data.healthy)
         return _improbable(trial)
+    if "identify" not in _telling(before, data):
+        return ""
     shares = [1.0 - after.excess("identify") / max(before.excess("identify"), 1e-12)]
     channel = channel_of_its_own(trial.effect, data)
     if channel is not None:
