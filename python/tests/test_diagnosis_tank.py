@@ -138,7 +138,7 @@ def test_effects_that_are_one_equation_are_fitted_together(
     pair = ("flow_conductance", "dead_volume")
     effects = [e for e in effects_of(data.rig) if e.id in (*pair, "exhaust_restriction", "tube")]
     effects += [e for e in effects_of(data.rig) if e.id in ("polytropic_index", "dead_band_width")]
-    current, trials = try_effects(baseline, data, effects, np.random.default_rng(1))
+    current, trials = try_effects(baseline, data, effects, np.random.default_rng(1), 0.5)
     fitted = [t.fitted is not current for t in trials if t.effect.id in pair]
     assert fitted == [True, True]
 

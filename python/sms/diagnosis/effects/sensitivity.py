@@ -23,7 +23,7 @@ def sensitivity_columns(
 ) -> Array:
     """(rows, m): change of the residual with the first parameter of each effect; by a step where it has no slope."""
     smooth = [e.parameters[0] for e in effects if e.step is None]
-    _, jacobian = problem.evaluate(params, smooth)
+    jacobian = problem.evaluate(params, smooth)[1] if smooth else np.empty((len(residual), 0))
     columns = np.empty((len(residual), len(effects)))
     place = 0
     for i, effect in enumerate(effects):

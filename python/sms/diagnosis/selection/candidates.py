@@ -55,6 +55,8 @@ class Trial:
     """Share of resamples of the windows or strokes in which it is the best of its round."""
     seen_share: float = 0.0
     """Share of what the model before it leaves beyond the noise that it takes, on identification records."""
+    helps: bool = False
+    """Whether it takes more than next to nothing where it was fitted (judgement.no_help)."""
     lower: float = 0.0
     """By how much it lowers the sum over windows and signals of the logarithm of what is left."""
     share: tuple[float, float, float] = (0.0, 0.0, 0.0)

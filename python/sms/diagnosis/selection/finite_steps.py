@@ -128,16 +128,16 @@ def _refined(
     return max(nothing, best, refined, key=lambda step: step.gain)
 
 
-def chosen_by_step(steps: Sequence[Step]) -> list[int]:
-    """Those that help most, each in a direction of its own, and those that do nearly the same as the first of them."""
+def chosen_by_step(steps: Sequence[Step]) -> tuple[list[int], list[int]]:
+    """Those that help most, each in a direction of its own; and others that do nearly the same as the first of them."""
     helping = [
         k for k in sorted(range(len(steps)), key=lambda k: -steps[k].gain) if steps[k].gain > 0.0
     ]
     change = np.array([step.change for step in steps])
     unit = change / np.maximum(np.linalg.norm(change, axis=1), 1e-300)[:, None]
     alike = unit @ unit.T > TWINS
-    with_first = [k for k in helping if alike[helping[0], k]]
-    return list(dict.fromkeys(first_of_each(helping, alike)[:TRIED_BY_STEP] + with_first))
+    first = first_of_each(helping, alike)[:TRIED_BY_STEP]
+    return first, [k for k in helping if alike[first[0], k] and k not in first]
 
 
 def first_of_each(order: Sequence[int], alike: NDArray[np.bool_]) -> list[int]:

@@ -65,9 +65,10 @@ def judge(
     for trial in trials:
         if trial.fitted is current:
             continue
-        if objection := _no_help(trial, current, data, before, needed, tried):
+        if objection := no_help(trial, current, data, before, needed, tried):
             trial.reason = objection
             continue
+        trial.helps = True
         after = Left.by(trial.fitted, data)
         trial.lower = float((before.by_window - after.by_window).sum())
         by_score = trial.p_value
@@ -98,7 +99,7 @@ def judge(
         _accept_significant([t for t in trials if t.fitted is not current], current, data)
 
 
-def _no_help(
+def no_help(
     trial: Trial, current: Fitted, data: Data, before: Left, needed: float, tried: int
 ) -> str:
     """That it takes next to nothing of what is left where it was fitted, if so. It is not asked about on the validation

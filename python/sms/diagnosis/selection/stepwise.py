@@ -10,13 +10,14 @@ A round. Every effect is tried on top of the model as it stands: by one linear s
 finite sizes (finite_steps.py). Those that promise most are fitted, from the better of the two, and with them the rivals
 of the best in its own equation: what helps there, and laws of several parameters, which may help only beside other
 numbers. The best joins the model with whatever cannot be told from it, and so on until nothing stands. Where nothing
-does from the beginning, those that promise next are fitted too, and then pairs. In the end each cause is taken out
-again, and must be missed.
+does from the beginning, those that promise next are fitted too, and then, if one of them helps at all, pairs. In the
+end each cause is taken out again, and must be missed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -58,6 +59,7 @@ from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.judgement import (
     ambiguity_group,
     judge,
+    no_help,
     with_substitutes,
 )
 from sms.diagnosis.selection.outcome import Outcome, Round
@@ -82,14 +84,15 @@ def try_effects(
     data: Data,
     effects: Sequence[Effect],
     rng: np.random.Generator,
+    needed: float,
     nearby: Mapping[Effect, Fitted] | None = None,
 ) -> tuple[Fitted, list[Trial]]:
     """Every effect on top of the model as it stands; those that promise most are fitted. The model comes back with the
-    initial states that the trials have found. nearby: those that were fitted from where the model stands; finite steps
-    begin at what is declared then.
+    initial states that the trials have found. needed: as in `judge`. nearby: those that were fitted from where the
+    model stands; finite steps begin at what is declared then.
     """
     scores = score_effects(current, data, effects, rng)
-    first, steps = _promising(current, data, effects, scores, nearby)
+    first, steps = _promising(current, data, effects, scores, needed, nearby)
     current = looked_at_again(current, data)
     trials = []
     for k, effect in enumerate(effects):
@@ -101,24 +104,31 @@ def try_effects(
     return current, trials
 
 
-def try_more(current: Fitted, data: Data, trials: Sequence[Trial]) -> list[Trial]:
+def try_more(current: Fitted, data: Data, trials: Sequence[Trial], needed: float) -> list[Trial]:
     """Where nothing that was fitted stands: those that promise next by finite steps, now fitted too, whichever leaves
     least to its end. What was not fitted was not refused: a lag of friction of 145 ms promises less at 10 ms than
-    effects that are not there, and with all else as it stands more is worse.
+    effects that are not there, and with all else as it stands more is worse. What is alike to the first of them is
+    fitted if that helps.
     """
     rest = [t for t in trials if t.fitted is current and t.by_step > 0.0]
     if not rest:
         return []
     effects = [t.effect for t in rest]
     steps = best_steps(effects, current, data, declared=data.healthy is not None)
-    chosen = chosen_by_step(steps) if any(step.gain > 0.0 for step in steps) else []
+    if not any(step.gain > 0.0 for step in steps):
+        return []
+    first, alike = chosen_by_step(steps)
 
     def candidate(k: int) -> Fitted:
         room = np.array(room_of(effects[k], current.params, data.rig))
         return without_sensitivities(_fitted(effects[k], current, data, steps[k], 0.0, room))
 
+    tried = {k: candidate(k) for k in first}
+    leader = replace(rest[first[0]], fitted=tried[first[0]])
+    if not no_help(leader, current, data, Left.by(current, data), needed, len(trials)):
+        tried |= {k: candidate(k) for k in alike}
     found = leaders_settled(
-        {k: candidate(k) for k in chosen},
+        tried,
         lambda fitted: logarithms(data.identify, fitted.fit.residual),
         lambda one, other: False,
         data,
@@ -133,11 +143,12 @@ def _promising(
     data: Data,
     effects: Sequence[Effect],
     scores: ScoreTests,
+    needed: float,
     nearby: Mapping[Effect, Fitted] | None,
 ) -> tuple[dict[int, Fitted], list[Step]]:
-    """By index the effects that are fitted: the best by finite steps and by slope, each in a direction of its own, then
-    what is alike to the best of them or acts in its equation, and what is the same as one of them to these signals. And
-    the finite steps of all.
+    """By index the effects that are fitted: the best by finite steps and by slope, each in a direction of its own; of
+    those that help where they are fitted, what is alike to them, and what acts in the equation of the best; and what is
+    the same as one of all these to these signals. And the finite steps of all.
     """
     room = np.array([room_of(e, current.params, data.rig) for e in effects])
     promise = scores.promise(np.minimum(room[:, 0], 0.0), np.maximum(room[:, 1], 0.0))
@@ -146,9 +157,8 @@ def _promising(
     steps = best_steps(effects, current, data, declared=afar or data.healthy is not None)
     alike = scores.cosine > ALIKE
     by_slope = first_of_each([int(k) for k in np.argsort(-promise) if promise[k] > 0.0], alike)
-    by_step = chosen_by_step(steps)
-    chosen = dict.fromkeys(by_step + by_slope[:TRIED_BY_SLOPE])
-    chosen |= dict.fromkeys(np.flatnonzero(alike[by_slope[0]]).tolist() if by_slope else ())
+    by_step, alike_to_first = chosen_by_step(steps)
+    before = Left.by(current, data)
 
     def left(fitted: Fitted) -> float:
         return logarithms(data.identify, fitted.fit.residual)
@@ -159,21 +169,32 @@ def _promising(
             found = nearby[effect]
         else:
             found = _fitted(effect, current, data, step, float(scores.estimate[k]), room[k])
-        if afar and k in by_step:
+        if afar and (k in by_step or k in alike_to_first):
             found = min(found, _fitted_from(step.params, effect, current, data), key=left)
         return without_sensitivities(found)
 
-    first = {k: candidate(k) for k in chosen}
+    first = {k: candidate(k) for k in dict.fromkeys(by_step + by_slope[:TRIED_BY_SLOPE])}
+
+    def helps(k: int) -> bool:
+        trial = Trial(effects[k], first[k], float(scores.p_value[k]))
+        return not no_help(trial, current, data, before, needed, len(effects))
+
+    more = alike_to_first if by_step and helps(by_step[0]) else []
+    if by_slope and helps(by_slope[0]):
+        more += np.flatnonzero(alike[by_slope[0]]).tolist()
+    first |= {k: candidate(k) for k in dict.fromkeys(more) if k not in first}
     best = min(first, key=lambda k: left(first[k]))
-    rivals = [
-        k
-        for k, effect in enumerate(effects)
-        if alike[k, best]
-        or (
-            effect.block == effects[best].block
-            and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
-        )
-    ]
+    rivals = []
+    if helps(best):
+        rivals = [
+            k
+            for k, effect in enumerate(effects)
+            if alike[k, best]
+            or (
+                effect.block == effects[best].block
+                and (steps[k].gain > 0.0 or len(effect.parameters) > 1)
+            )
+        ]
     # What is known tells some effects apart that are one equation to these signals: a tank's volume, and all its flow.
     same = cosines(raw_columns(current, data.identify, effects)) > SAME
     rivals += np.flatnonzero(same[list(first)].any(axis=0)).tolist()
@@ -191,20 +212,17 @@ def _fitted(
     step_by_slope = float(np.clip(slope, min(room[0], 0.0), max(room[1], 0.0)))
     linear = moved(effect, current.params, step_by_slope, data.rig)
     linear = linear if effect.step is None else max(linear, 0.1 * effect.step)
-    best: tuple[float, _core.Params] | None = None
-    starts = [changed(current.params, [name], np.array([linear]))]
+    start = changed(current.params, [name], np.array([linear]))
     if step.gain > 0.0:  # else the neutral value, which is left only where all else makes up for it
-        starts.append(step.params)
-    for start in starts:
-        residual = residual_of(data.identify, start)
-        if np.all(np.isfinite(residual)):
-            left = logarithms(data.identify, residual)
-            if best is None or left < best[0]:
-                best = (left, start)
+        still = linear == current.params[name]
+        there = current.fit.residual if still else residual_of(data.identify, start)
+        by_step = residual_of(data.identify, step.params)
+        if logarithms(data.identify, by_step) < logarithms(data.identify, there):
+            start = step.params
     slopes = current.slopes
     if name not in slopes:
         slopes[name] = raw_columns(current, data.identify, [effect])[:, 0]
-    return _fitted_from(current.params if best is None else best[1], effect, current, data, slopes)
+    return _fitted_from(start, effect, current, data, slopes)
 
 
 def _fitted_from(
@@ -252,22 +270,22 @@ def stepwise_selection(
             break
         share = 0.1 + 0.75 * number / (MOST_CAUSES + 1)
         progress(f"round {number}: {len(remaining)} effects", share)
-        current, trials = try_effects(current, data, remaining, rng)
         needed = NEARLY_ALL if small(here, least) else LEAST_SHARE
+        current, trials = try_effects(current, data, remaining, rng, needed)
         judge(trials, current, data, original, needed, rng)
         members = ambiguity_group(trials, current, data)
         if not members and data.healthy is None and departs(current):
             # What is known went farther than chance has it: it may have made up for what is looked for.
             nearby = {t.effect: t.fitted for t in trials if t.fitted is not current}
-            current, trials = try_effects(current, data, remaining, rng, nearby)
+            current, trials = try_effects(current, data, remaining, rng, needed, nearby)
             judge(trials, current, data, original, needed, rng)
             members = ambiguity_group(trials, current, data)
-        if not members and number == 1 and (more := try_more(current, data, trials)):
+        if not members and number == 1 and (more := try_more(current, data, trials, needed)):
             judge(more, current, data, original, needed, rng, tried=len(trials))
             members = ambiguity_group(trials, current, data)
-        together = (
-            [] if members or number > 1 else try_pairs(trials, current, data, original, needed, rng)
-        )
+        together: list[Round] = []
+        if not members and number == 1 and any(t.helps for t in trials):
+            together = try_pairs(trials, current, data, original, needed, rng)
         rounds += together or [Round(trials, members)]
         _forget(trials, current, data)
         found_now = [r.members for r in together] or ([members] if members else [])
