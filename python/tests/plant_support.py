@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from sms import Params, _core, extensions_of, simulate_bench, simulate_platform
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
+from sms.diagnosis.fitting import fit
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis
 from sms.diagnosis.preparation import make_data
 from sms.io import load_rig, write_record
 from sms.io.records import load_record

@@ -12,7 +12,8 @@ from plant_support import write_platform
 from sms import _core
 from sms.diagnosis import diagnose
 from sms.diagnosis.effects.catalogue import catalogue, effects_of
-from sms.diagnosis.hypothesis import baseline_hypothesis, fit, nuisance_of
+from sms.diagnosis.fitting import fit, nuisance_of
+from sms.diagnosis.hypothesis import baseline_hypothesis
 from sms.diagnosis.localisation import unknown_inputs
 from sms.diagnosis.localisation.signal_functions import (
     alike,

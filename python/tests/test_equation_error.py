@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from plant_support import NOISE, pose, setpoint, write_bench
 from sms import Params, _core, extensions_of, simulate_bench, simulate_platform, simulate_tank
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import baseline_hypothesis, fit
+from sms.diagnosis.fitting import fit
+from sms.diagnosis.hypothesis import baseline_hypothesis
 from sms.diagnosis.localisation.equation_error import fed_equations, feed, smoothed
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data

@@ -16,13 +16,8 @@ from sms.diagnosis.adequacy.parameter_constancy import Sizes, inconstancy
 from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.adequacy.subset_estimates import column_of, linear, record_by_record
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
-    baseline_hypothesis,
-    fit,
-    without_sensitivities,
-)
+from sms.diagnosis.fitting import fit, without_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis
 from sms.diagnosis.localisation.activity import activity, own_signals
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data

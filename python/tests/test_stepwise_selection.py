@@ -23,12 +23,8 @@ from sms.diagnosis.adequacy.residual_energy import (
     tolerated,
 )
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import (
-    WIDE,
-    baseline_hypothesis,
-    cost_of_departure,
-    fit,
-)
+from sms.diagnosis.fitting import cost_of_departure, fit
+from sms.diagnosis.hypothesis import WIDE, baseline_hypothesis
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.remainder import Unexplained

@@ -14,7 +14,8 @@ from sms.diagnosis.adequacy.subset_estimates import (
     variance_between,
 )
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, nuisance_of
+from sms.diagnosis.fitting import fit, nuisance_of
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data
 from sms.estimation.nuisance import project

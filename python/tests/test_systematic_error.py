@@ -12,7 +12,7 @@ from plant_support import LEAK, fitted_baseline, with_known_map, write_bench
 from sms import _core
 from sms.diagnosis.adequacy import systematic_error
 from sms.diagnosis.adequacy.systematic_error import Systematic, generalised, process
-from sms.diagnosis.hypothesis import cost_of_departure
+from sms.diagnosis.fitting import cost_of_departure
 from sms.diagnosis.localisation.signal_functions import points
 
 from validation.random_cases import draw

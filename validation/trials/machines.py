@@ -22,7 +22,7 @@ from sms.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
 from sms.diagnosis.adequacy.subset_estimates import found_value
 from sms.diagnosis.adequacy.systematic_error import sized
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import fit
+from sms.diagnosis.fitting import fit
 from sms.diagnosis.simulated import Case
 from sms.io.json_files import json_line
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Data, Fitted, residual_of
+from sms.diagnosis.fitting import residual_of
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import refitted, refitted_on
 from sms.diagnosis.result import Candidate, Cause, Gain, Member, ParameterValue, Series
 from sms.diagnosis.selection.candidates import Trial

@@ -11,14 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
-    fit,
-    residual_of,
-    with_sensitivities,
-    without_sensitivities,
-)
+from sms.diagnosis.fitting import fit, residual_of, with_sensitivities, without_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.estimation.discrepancy import Discrepancy
 from sms.estimation.least_squares import WindowFit, changed
 from sms.estimation.windows import Runs

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from sms.diagnosis.adequacy.repeatability import Ground
 from sms.diagnosis.effects.catalogue import effects_of
-from sms.diagnosis.hypothesis import Data, baseline_hypothesis, fit, residual_of
+from sms.diagnosis.fitting import fit, residual_of
+from sms.diagnosis.hypothesis import Data, baseline_hypothesis
 from sms.diagnosis.result import Finding
 from sms.estimation.block_statistics import windows_per_block
 from sms.estimation.kind import Kind

@@ -7,16 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import (
-    WIDE,
-    Data,
-    Fitted,
-    Healthy,
-    Hypothesis,
-    fit,
-    fit_with_discrepancy,
-    weights_of,
-)
+from sms.diagnosis.fitting import fit, fit_with_discrepancy, weights_of
+from sms.diagnosis.hypothesis import WIDE, Data, Fitted, Healthy, Hypothesis
 from sms.estimation.block_statistics import covariance_from, scatter_of_scores
 from sms.estimation.jump_times import with_jump_times
 from sms.estimation.least_squares import counted_rows

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit
+from sms.diagnosis.fitting import fit
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis
 from sms.diagnosis.result import ParameterValue, Related
 from sms.estimation.noise import noise_of
 from sms.estimation.windows import Runs

@@ -34,14 +34,9 @@ from sms.diagnosis.design.next_experiment import next_experiment
 from sms.diagnosis.design.still_hidden import still_hidden
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
+from sms.diagnosis.fitting import fit, nuisance_of
 from sms.diagnosis.free_run import free_runs
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
-    baseline_hypothesis,
-    fit,
-    nuisance_of,
-)
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis
 from sms.diagnosis.localisation.empirical_term import empirical_of
 from sms.diagnosis.localisation.equation_error import fed_equations
 from sms.diagnosis.localisation.residual_spectrum import symptoms_of

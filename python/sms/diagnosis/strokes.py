@@ -17,7 +17,8 @@ from sms.diagnosis.adequacy.repeatability import Repeatability, arrangement, rep
 from sms.diagnosis.adequacy.verdict import of_causes
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import candidates_of, cause_from, gains, series_of, value_of
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
+from sms.diagnosis.fitting import fit, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis
 from sms.diagnosis.localisation.ripple import find_ripple
 from sms.diagnosis.related_rigs import related_rigs
 from sms.diagnosis.remainder import Remainder

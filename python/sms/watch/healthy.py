@@ -26,7 +26,8 @@ import numpy as np
 from sms.arrays import Array, Index
 from sms.callbacks import Progress
 from sms.diagnosis.effects.catalogue import Effect, effects_of
-from sms.diagnosis.hypothesis import Data, Hypothesis, baseline_hypothesis, weights_of
+from sms.diagnosis.fitting import weights_of
+from sms.diagnosis.hypothesis import Data, Hypothesis, baseline_hypothesis
 from sms.diagnosis.reference import from_reference
 from sms.diagnosis.selection.candidates import room_of
 from sms.diagnosis.thresholds import DETECTION

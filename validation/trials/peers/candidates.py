@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit
+from sms.diagnosis.fitting import fit
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import unseen
 from sms.diagnosis.selection.candidates import score_effects
 from sms.estimation.windows import Runs

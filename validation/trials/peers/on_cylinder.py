@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from sms.diagnosis import diagnose
 from sms.diagnosis.effects.catalogue import catalogue
-from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis, fit, residual_of
+from sms.diagnosis.fitting import fit, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, baseline_hypothesis
 from sms.diagnosis.pipeline import read_and_check
 from sms.diagnosis.preparation import make_data
 from sms.diagnosis.result import Diagnosis

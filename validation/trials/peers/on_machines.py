@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from sms.diagnosis.adequacy.lack_of_fit import lack_of_fit
 from sms.diagnosis.effects.catalogue import Effect, effects_of
-from sms.diagnosis.hypothesis import Fitted, nuisance_of
+from sms.diagnosis.fitting import nuisance_of
+from sms.diagnosis.hypothesis import Fitted
 from sms.diagnosis.localisation.equation_error import Fed, errors_of
 from sms.diagnosis.localisation.signal_functions import belong_together, leg_of
 from sms.diagnosis.localisation.unknown_inputs import with_curve, with_terms

@@ -21,7 +21,8 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import energies
-from sms.diagnosis.hypothesis import Data, residual_of
+from sms.diagnosis.fitting import residual_of
+from sms.diagnosis.hypothesis import Data
 from sms.diagnosis.result import Finding
 from sms.diagnosis.thresholds import LEAST_SHARE, NEARLY_ALL
 from sms.estimation.run import Run

@@ -19,7 +19,8 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, nuisance_of
+from sms.diagnosis.fitting import fit, nuisance_of
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import refitted_with_slopes
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.thresholds import DIFFERS, DIFFERS_BY, EXPLAINS, TRIED_BY_RECORD

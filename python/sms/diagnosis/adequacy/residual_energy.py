@@ -13,7 +13,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Data, Fitted, cost_of_departure, weights_of
+from sms.diagnosis.fitting import cost_of_departure, weights_of
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import refitted
 from sms.diagnosis.thresholds import DEPARTS, LEAST_OF_NOISE, TOLERATED
 from sms.estimation.windows import Runs

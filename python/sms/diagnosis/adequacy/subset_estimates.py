@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from sms.arrays import Array, Index
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.evidence import value_of
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, with_sensitivities
+from sms.diagnosis.fitting import nuisance_of, with_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import refitted_with_slopes
 from sms.diagnosis.result import ParameterValue
 from sms.diagnosis.selection.identifiability import raw_columns

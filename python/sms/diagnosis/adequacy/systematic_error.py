@@ -18,15 +18,8 @@ import numpy as np
 
 from sms import _core
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
-    departure,
-    fit,
-    fit_with_discrepancy,
-    nuisance_of,
-    residual_of,
-)
+from sms.diagnosis.fitting import departure, fit, fit_with_discrepancy, nuisance_of, residual_of
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.localisation.signal_functions import (
     alike,
     alike_signals,

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from sms.diagnosis.adequacy.hysteresis import Hysteresis, hysteresis
 from sms.diagnosis.adequacy.parameter_constancy import Inconstancy, inconstancy
 from sms.diagnosis.adequacy.residual_energy import Left
-from sms.diagnosis.hypothesis import Data, Fitted, with_sensitivities
+from sms.diagnosis.fitting import with_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.result import Verdict
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.outcome import Outcome

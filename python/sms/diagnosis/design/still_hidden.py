@@ -16,7 +16,8 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
+from sms.diagnosis.fitting import nuisance_of
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.result import StillHidden
 from sms.diagnosis.selection.candidates import room_of
 from sms.diagnosis.selection.identifiability import raw_columns

@@ -11,7 +11,8 @@ import numpy as np
 
 from sms.arrays import Array
 from sms.diagnosis.evidence import gains_on
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of
+from sms.diagnosis.fitting import nuisance_of
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.localisation.unknown_inputs import with_curve
 from sms.diagnosis.other_records import refitted_on
 from sms.diagnosis.remainder import Shape

@@ -25,7 +25,8 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from sms import _core
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Fitted, free_of
+from sms.diagnosis.fitting import free_of
+from sms.diagnosis.hypothesis import Fitted
 from sms.diagnosis.remainder import EquationError, ErrorCurve, FedEquations
 from sms.diagnosis.thresholds import AVERAGE, DRAWS, ENDS, SMOOTHING, STRETCH, TOLERANCE
 from sms.estimation.block_statistics import sum_by

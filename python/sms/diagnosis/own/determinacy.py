@@ -15,7 +15,8 @@ from fractions import Fraction
 import numpy as np
 
 from sms.arrays import Array
-from sms.diagnosis.hypothesis import Fitted, weights_of
+from sms.diagnosis.fitting import weights_of
+from sms.diagnosis.hypothesis import Fitted
 from sms.diagnosis.own.model import Model, Parameter
 from sms.diagnosis.result import Finding, Undetermined
 from sms.diagnosis.thresholds import DETECTION

@@ -15,7 +15,8 @@ from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, departs, nothing_left, small
 from sms.diagnosis.adequacy.systematic_error import generalised, with_systematic_error
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit
+from sms.diagnosis.fitting import fit
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import extended
 from sms.diagnosis.selection.judgement import beyond_doubt, channel_of_its_own, implausible

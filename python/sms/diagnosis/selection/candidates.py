@@ -15,15 +15,14 @@ import numpy as np
 from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import (
-    Data,
-    Fitted,
+from sms.diagnosis.fitting import (
     fit,
     nuisance_of,
     residual_of,
     sensitivities,
     without_sensitivities,
 )
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.selection.identifiability import raw_columns
 from sms.diagnosis.selection.score_test import ScoreTests, score_tests
 from sms.estimation.block_statistics import score_test

@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from sms.arrays import Array, Index
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, with_sensitivities
+from sms.diagnosis.fitting import nuisance_of, with_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import refitted
 from sms.estimation.block_statistics import interval, resampled, weighted_ms
 from sms.estimation.nuisance import Nuisance

@@ -15,7 +15,8 @@ from sms import _core
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import beyond_healthy, energies, logarithms
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, Hypothesis, residual_of
+from sms.diagnosis.fitting import residual_of
+from sms.diagnosis.hypothesis import Data, Fitted, Hypothesis
 from sms.diagnosis.selection.candidates import moved, room_of
 from sms.diagnosis.thresholds import FINITE_STEPS, REFINED, STEPPED_ON, TRIED_BY_STEP, TWINS
 from sms.estimation.least_squares import Free, changed, fit_windows

@@ -9,7 +9,8 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.effects.sensitivity import sensitivity_columns
-from sms.diagnosis.hypothesis import Data, Fitted, nuisance_of, sensitivities
+from sms.diagnosis.fitting import nuisance_of, sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.result import NotTestable
 from sms.diagnosis.selection.excitation import missing_excitation
 from sms.diagnosis.thresholds import DETECTION

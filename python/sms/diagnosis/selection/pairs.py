@@ -14,7 +14,8 @@ import numpy as np
 from sms.arrays import Array
 from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, logarithms
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
+from sms.diagnosis.fitting import fit, residual_of, without_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.selection.candidates import Trial, leaders_settled
 from sms.diagnosis.selection.finite_steps import Step, best_steps, extended
 from sms.diagnosis.selection.judgement import alike, judge

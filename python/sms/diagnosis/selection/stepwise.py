@@ -32,7 +32,8 @@ from sms.diagnosis.adequacy.residual_energy import (
     small,
 )
 from sms.diagnosis.effects.catalogue import Effect
-from sms.diagnosis.hypothesis import Data, Fitted, fit, residual_of, without_sensitivities
+from sms.diagnosis.fitting import fit, residual_of, without_sensitivities
+from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import looked_at_again
 from sms.diagnosis.selection.backward_elimination import (
     backward_elimination,
