@@ -9,13 +9,7 @@ import numpy as np
 import pytest
 from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.reference import _inflation
-from sms.diagnosis.selection import (
-    backward_elimination,
-    candidates,
-    judgement,
-    pairs,
-    stepwise,
-)
+from sms.diagnosis.selection import backward_elimination, candidates, judgement, pairs
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step, chosen_by_step
 from sms.diagnosis.selection.outcome import Outcome, Round
@@ -254,35 +248,6 @@ def test_several_names_of_one_change_take_one_of_the_places_that_are_fitted() ->
     assert first == [0, 1, 4]
     assert alike == [2, 3]
     assert chosen_by_step([Step(0.0, current, shift)]) == ([], [])
-
-
-@pytest.mark.parametrize("helps", [True, False])
-def test_what_is_alike_to_the_first_is_fitted_where_that_helps(
-    helps: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """From what is declared 31 effects shifted one window of a platform alike, and none of them took anything."""
-    shift, droop = np.eye(2)
-    current = cast(Any, SimpleNamespace(params="its values"))
-    gains = {
-        "zero": (9.0, shift),
-        "gain": (8.0, shift),
-        "droop": (3.0, droop),
-        "none": (0.0, droop),
-    }
-    steps = [Step(gain, current, change) for gain, change in gains.values()]
-    monkeypatch.setattr(stepwise, "best_steps", lambda *model, declared: steps)
-    monkeypatch.setattr(stepwise, "room_of", lambda *effect: (0.0, 1.0))
-    monkeypatch.setattr(stepwise, "_fitted", lambda effect, *model: f"with {effect}")
-    monkeypatch.setattr(stepwise, "without_sensitivities", lambda fitted: fitted)
-    monkeypatch.setattr(stepwise, "leaders_settled", lambda fits, *how: fits)
-    monkeypatch.setattr(Left, "by", lambda fitted, data: None)
-    monkeypatch.setattr(stepwise, "no_help", lambda *trial: "" if helps else "takes 0 %")
-    trials = [Trial(cast(Any, name), current, 0.5, by_step=1.0) for name in gains]
-    data = cast(Any, SimpleNamespace(healthy=None, rig=None))
-    more = stepwise.try_more(current, data, trials, 0.5)
-    assert [t.effect for t in more] == (["zero", "droop", "gain"] if helps else ["zero", "droop"])
-    assert [t.fitted for t in more] == [f"with {t.effect}" for t in more]
-    assert trials[3].fitted is current
 
 
 def test_of_nothing_a_cause_takes_no_share() -> None:

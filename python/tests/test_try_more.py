@@ -7,6 +7,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.selection import stepwise
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step
@@ -18,7 +19,7 @@ DATA = cast(Any, SimpleNamespace(healthy=None, identify=None, rig=None))
 
 def trial(name: str, by_step: float, fitted: Any = CURRENT) -> Trial:
     effect = cast(Any, SimpleNamespace(key=name, parameters=(name,)))
-    made = Trial(effect, fitted, 0.5, np.zeros(1), by_step=by_step)
+    made = Trial(effect, fitted, 0.5, by_step=by_step)
     made.reason = "promises less than others of this round, by slope and by finite steps"
     return made
 
@@ -48,7 +49,8 @@ def left_by(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
     monkeypatch.setattr(stepwise, "without_sensitivities", lambda fitted: fitted)
     monkeypatch.setattr(stepwise, "leaders_settled", settled)
     monkeypatch.setattr(stepwise, "logarithms", lambda runs, residual: float(residual[0]))
-    monkeypatch.setattr(stepwise, "refitted", lambda fitted, data: fitted)
+    monkeypatch.setattr(stepwise, "no_help", lambda *trial: "takes 0 %")
+    monkeypatch.setattr(Left, "by", lambda fitted, data: None)
     return left
 
 
@@ -64,13 +66,29 @@ def test_the_next_three_are_fitted_and_the_best_of_them_to_its_end(
         trial("mass", 0.2),
         trial("tube", 0.1),
     ]
-    more = try_more(CURRENT, DATA, trials)
+    more = try_more(CURRENT, DATA, trials, 0.5)
     assert [t.effect.key for t in more] == ["lag", "cushion", "mass"]
-    assert [float(t.identified[0]) for t in more] == [0.25, 9.0, 16.0]
+    assert [float(t.fitted.fit.residual[0]) for t in more] == [0.5, 3.0, 4.0]
     assert not any(t.reason for t in more)
     assert trials[0].fitted is fitted_before
     assert all(t.fitted is CURRENT for t in trials if t.effect.key in ("gain", "tube"))
 
 
 def test_where_nothing_promises_nothing_is_fitted(left_by: dict[str, float]) -> None:
-    assert not try_more(CURRENT, DATA, [trial("gain", 0.0)])
+    assert not try_more(CURRENT, DATA, [trial("gain", 0.0)], 0.5)
+
+
+@pytest.mark.parametrize("helps", [True, False])
+def test_what_is_alike_to_the_first_is_fitted_where_that_helps(
+    helps: bool, left_by: dict[str, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From what is declared 31 effects shifted one window of a platform alike, and none of them took anything."""
+    shift, droop = np.eye(2)
+    gains = {"zero": (9.0, shift), "gain": (8.0, shift), "droop": (3.0, droop)}
+    steps = [Step(gain, cast(Any, None), change) for gain, change in gains.values()]
+    left_by |= {"zero": 2.0, "gain": 3.0, "droop": 4.0}
+    monkeypatch.setattr(stepwise, "best_steps", lambda *model, declared: steps)
+    monkeypatch.setattr(stepwise, "no_help", lambda *trial: "" if helps else "takes 0 %")
+    more = try_more(CURRENT, DATA, [trial(name, 1.0) for name in gains], 0.5)
+    expected = ["zero", "droop", "gain"] if helps else ["zero", "droop"]
+    assert [t.effect.key for t in more] == expected

@@ -127,7 +127,7 @@ def events(out: Path, event: str) -> list[dict[str, Any]]:
 def test_a_bench_that_begins_to_leak_is_alarmed_and_not_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(healthy, "FIT_LENGTH", 20.0)  # s; a third of it, a third as long a fit
+    monkeypatch.setattr(healthy, "FIT_LENGTH", 30.0)  # s; half of it, half as long a fit
     day = day_of(tmp_path / "day", SHORT, 40.0)
     out, told = tmp_path / "out", tmp_path / "told.json"
     keep = "import sys, pathlib; pathlib.Path(sys.argv[1]).write_text(sys.argv[2])"
