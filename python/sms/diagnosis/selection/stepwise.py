@@ -180,7 +180,7 @@ def _promising(
         trial = Trial(effects[k], first[k], float(scores.p_value[k]))
         return not no_help(trial, current, data, before, needed, len(effects))
 
-    more = alike_to_first if by_step and helps(by_step[0]) else []
+    more = list(alike_to_first) if by_step and helps(by_step[0]) else []
     if by_slope and helps(by_slope[0]):
         more += np.flatnonzero(alike[by_slope[0]]).tolist()
     first |= {k: candidate(k) for k in dict.fromkeys(more) if k not in first}
