@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sms.diagnosis.adequacy.residual_energy import Left
 from sms.diagnosis.reference import _inflation
-from sms.diagnosis.selection import backward_elimination, candidates, judgement, pairs
+from sms.diagnosis.selection import ambiguity, backward_elimination, candidates, judgement, pairs
 from sms.diagnosis.selection.candidates import Trial
 from sms.diagnosis.selection.finite_steps import Step, chosen_by_step
 from sms.diagnosis.selection.outcome import Outcome, Round
@@ -53,14 +53,14 @@ def test_members_that_are_one_equation_are_not_ordered_by_rounding() -> None:
 
     for off in (-1e-12, 0.0, 1e-12):
         members = [trial("outlet", 0.9), trial("leak", 0.9 + off), trial("late", 0.95)]
-        assert [t.effect.key for t in judgement._plainest(members)] == ["late", "leak", "outlet"]
+        assert [t.effect.key for t in ambiguity._plainest(members)] == ["late", "leak", "outlet"]
 
 
 def test_what_is_no_worse_than_the_last_cause_shares_its_class(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     worse = {"c"}
-    monkeypatch.setattr(judgement, "_no_worse", lambda t, best, data: t.effect not in worse)
+    monkeypatch.setattr(ambiguity, "_no_worse", lambda t, best, data: t.effect not in worse)
 
     def trial(effect: str, lower: float, accepted: bool = True) -> Trial:
         made = Trial(cast(Any, effect), cast(Any, None), 0.0, np.zeros(1))
@@ -69,7 +69,7 @@ def test_what_is_no_worse_than_the_last_cause_shares_its_class(
 
     trials = [trial(e, n) for n, e in enumerate("abcdef")] + [trial("z", 9.0, accepted=False)]
     best = trials[0]
-    members = judgement.with_substitutes(Round(trials, [best]), cast(Any, None)).members
+    members = ambiguity.with_substitutes(Round(trials, [best]), cast(Any, None)).members
     # c is worse, z was not accepted; of the others the best two.
     assert [t.effect for t in members] == ["a", "f", "e"]
     assert all(t.support == pytest.approx(1.0 / 3.0) for t in members)
@@ -80,9 +80,9 @@ def test_what_leaves_less_at_the_end_of_what_is_plausible_shares_the_class(
 ) -> None:
     """A cylinder without Coulomb friction fits at 0 N, and pressure-dependent friction was named alone in its place."""
     monkeypatch.setattr(
-        judgement, "implausible", lambda effect, fitted, data: effect.end and "at the end"
+        ambiguity, "implausible", lambda effect, fitted, data: effect.end and "at the end"
     )
-    monkeypatch.setattr(judgement, "_similarity", lambda one, other, *_: other.effect.cosine)
+    monkeypatch.setattr(ambiguity, "_similarity", lambda one, other, *_: other.effect.cosine)
     model, candidate = cast(Any, "model as it stands"), cast(Any, "with the effect")
 
     def trial(
@@ -106,7 +106,7 @@ def test_what_leaves_less_at_the_end_of_what_is_plausible_shares_the_class(
     ]
     by_chance = trial("by chance", 9.0)
     by_chance.p_value = 0.5
-    members = judgement.ambiguity_group([*tried, by_chance], model, cast(Any, None))
+    members = ambiguity.ambiguity_group([*tried, by_chance], model, cast(Any, None))
     assert [m.effect.id for m in members] == ["named", "leaves less"]
     assert members[1].reason == "at the end, and leaves less than what is named"
     assert [m.support for m in members] == [0.5, 0.5]
@@ -127,15 +127,15 @@ def test_of_a_crowd_those_stay_that_are_hardly_worse(
     def no_worse(trial: Trial, best: Trial, data: Any, standard_errors: float = 3.0) -> bool:
         return worse_by[trial.effect.key] <= standard_errors
 
-    monkeypatch.setattr(judgement, "_no_worse", no_worse)
-    monkeypatch.setattr(judgement, "_similarity", lambda one, other, current, data: 0.95)
+    monkeypatch.setattr(ambiguity, "_no_worse", no_worse)
+    monkeypatch.setattr(ambiguity, "_similarity", lambda one, other, current, data: 0.95)
     accepted = []
     for name in ("a", *worse_by):
         effect = SimpleNamespace(key=name, id=name, parameters=(name,))
         trial = Trial(cast(Any, effect), cast(Any, None), 0.0, np.zeros(1))
         trial.lower = 10.0 - worse_by.get(name, 0.0)
         accepted.append(trial)
-    members = judgement.alike(accepted, cast(Any, None), cast(Any, None))
+    members = ambiguity.alike(accepted, cast(Any, None), cast(Any, None))
     assert "".join(sorted(m.effect.id for m in members)) == class_of
 
 

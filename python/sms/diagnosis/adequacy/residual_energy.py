@@ -114,7 +114,7 @@ def taken_beyond_floor(before: Fitted, after: Fitted, data: Data) -> tuple[float
 
 
 def seen_beyond_floor(before: Fitted, after: Fitted, runs: Runs) -> float:
-    """The same share on the records that both were fitted to."""
+    """Of what one model leaves beyond the noise floor, the share that another takes on records both were fitted to."""
     residuals = before.fit.residual, after.fit.residual
     floor = np.maximum(np.minimum(*(runs.floor(r) for r in residuals)), 1.0)
     was, now = (

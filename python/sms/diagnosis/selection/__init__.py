@@ -9,7 +9,8 @@ forward_selection      rounds on a cylinder until nothing more is found, and the
 validation             judgement of a cylinder's trials on the validation records, and ambiguity groups
 stepwise               rounds on a simulated rig: selected forward, eliminated backward
 pairs                  two causes of which neither stands alone
-judgement              judgement of its trials on records of both roles, and ambiguity groups
+judgement              judgement of its trials on records of both roles
 cross_validation       the same where the validation records are insensitive to an effect
+ambiguity              which trials that can be causes these records cannot tell apart
 outcome                what the rounds brought
 """

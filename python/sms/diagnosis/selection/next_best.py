@@ -8,8 +8,8 @@ account cannot be shown is nothing against another.
 from __future__ import annotations
 
 from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.selection.ambiguity import alike
 from sms.diagnosis.selection.candidates import converged
-from sms.diagnosis.selection.judgement import alike
 from sms.diagnosis.selection.outcome import Outcome, Round
 
 

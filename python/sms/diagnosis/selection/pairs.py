@@ -16,9 +16,10 @@ from sms.diagnosis.adequacy.residual_energy import ROLES, Left, beyond_healthy, 
 from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.fitting import fit, residual_of, without_sensitivities
 from sms.diagnosis.hypothesis import Data, Fitted
+from sms.diagnosis.selection.ambiguity import alike
 from sms.diagnosis.selection.candidates import Trial, leaders_settled
 from sms.diagnosis.selection.finite_steps import Step, best_steps, extended
-from sms.diagnosis.selection.judgement import alike, judge
+from sms.diagnosis.selection.judgement import judge
 from sms.diagnosis.selection.outcome import Round
 from sms.diagnosis.thresholds import LEADERS, LEAST_SHARE, PAIR_STEPS, PARTNERS, TWINS
 from sms.estimation.least_squares import changed

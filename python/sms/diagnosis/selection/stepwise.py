@@ -35,6 +35,7 @@ from sms.diagnosis.effects.catalogue import Effect
 from sms.diagnosis.fitting import fit, residual_of, without_sensitivities
 from sms.diagnosis.hypothesis import Data, Fitted
 from sms.diagnosis.other_records import looked_at_again
+from sms.diagnosis.selection.ambiguity import ambiguity_group, with_substitutes
 from sms.diagnosis.selection.backward_elimination import (
     backward_elimination,
     beyond_plausible,
@@ -57,12 +58,7 @@ from sms.diagnosis.selection.finite_steps import (
     first_of_each,
 )
 from sms.diagnosis.selection.identifiability import raw_columns
-from sms.diagnosis.selection.judgement import (
-    ambiguity_group,
-    judge,
-    no_help,
-    with_substitutes,
-)
+from sms.diagnosis.selection.judgement import judge, no_help
 from sms.diagnosis.selection.outcome import Outcome, Round
 from sms.diagnosis.selection.pairs import try_pairs
 from sms.diagnosis.selection.score_test import ScoreTests, cosines
