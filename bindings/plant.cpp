@@ -10,6 +10,7 @@
 #include "exclusive.hpp"
 #include "plant_rows.hpp"
 #include "rows.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/simulate.hpp"
 
 namespace sms_python {

@@ -8,6 +8,7 @@
 #include "bind.hpp"
 #include "choice.hpp"
 #include "sip_key.hpp"
+#include "sms/compiled_mechanism.hpp"
 
 namespace sms_python {
 namespace {

@@ -1,5 +1,6 @@
 #include "estimation/measured_path.hpp"
 
+#include "sms/compiled_mechanism.hpp"
 #include "sms/forward_kinematics.hpp"
 
 namespace sms {

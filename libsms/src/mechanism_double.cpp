@@ -1,3 +1,7 @@
+#include "sms/compiled_mechanism.hpp"
+
+SMS_MECHANISM_IN_DOUBLE(template)
+
 #define SMS_REAL double
 #define SMS_F(name) name
 #include "abi_dynamics.inc"

@@ -4,3 +4,4 @@
 #include "abi_friction.inc"
 #include "abi_plant.inc"
 #include "abi_pneumatics.inc"
+#include "sms/compiled_mechanism.hpp"

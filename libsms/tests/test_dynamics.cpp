@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mechanism_cases.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/end_stop.hpp"
 #include "sms/linear_dynamics.hpp"
 #if __has_include(<ceres/jet.h>)

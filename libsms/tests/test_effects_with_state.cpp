@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "random_cases.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/integrate_stiff.hpp"
 #include "sms/simulate.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "parallel_cases.hpp"
-#include "sms/dynamics.hpp"
+#include "sms/compiled_mechanism.hpp"
 
 using namespace sms_test;
 

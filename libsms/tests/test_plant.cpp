@@ -9,6 +9,7 @@
 #include <string>
 
 #include "random_cases.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/plant.hpp"
 #include "sms/simulate.hpp"
 

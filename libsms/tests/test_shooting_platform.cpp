@@ -6,6 +6,7 @@
 #include <string>
 
 #include "estimation/platform_plant.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/integrate.hpp"
 
 namespace est = sms::estimation;

@@ -8,6 +8,7 @@
 
 #include "estimation/platform_loop.hpp"
 #include "random_cases.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/simulate.hpp"
 
 namespace est = sms::estimation;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "random_cases.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/simulate.hpp"
 
 namespace {

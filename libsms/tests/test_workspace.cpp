@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mechanism_cases.hpp"
+#include "sms/compiled_mechanism.hpp"
 #include "sms/workspace.hpp"
 
 using namespace sms_test;
