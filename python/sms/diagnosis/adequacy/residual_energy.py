@@ -81,6 +81,10 @@ class Left:
         energy = self.energy(role)
         return max(float(np.mean(energy)) - 1.0, 0.0) if self.absolute else excess(energy)
 
+    def share_taken(self, after: Left, role: Role) -> float:
+        """Of that, the share that another model takes."""
+        return 1.0 - after.excess(role) / max(self.excess(role), 1e-12)
+
 
 def _left(data: Data, runs: Runs, model: Fitted) -> Array:
     energy = energies(runs, beyond_healthy(data, runs, model.fit.residual))

@@ -109,11 +109,10 @@ def no_help(
         return _improbable(trial)
     if "identify" not in _telling(before, data):
         return ""
-    shares = [1.0 - after.excess("identify") / max(before.excess("identify"), 1e-12)]
+    shares = [before.share_taken(after, "identify")]
     channel = channel_of_its_own(trial.effect, data)
     if channel is not None:
-        was, now = before.of(channel), after.of(channel)
-        shares.append(1.0 - now.excess("identify") / max(was.excess("identify"), 1e-12))
+        shares.append(before.of(channel).share_taken(after.of(channel), "identify"))
     if needed > LEAST_SHARE:
         shares.append(seen_beyond_floor(current, trial.fitted, data.identify))
     trial.seen_share = shares[0]
@@ -171,8 +170,7 @@ def channel_of_its_own(effect: Effect, data: Data) -> int | None:
 
 def _by_windows(trial: Trial, before: Left, after: Left, weights: Array, tried: int) -> None:
     """Shares of what is left beyond the noise, and the chance that so many windows are better."""
-    excess = [(before.excess(role), after.excess(role)) for role in ROLES]
-    trial.seen_share, trial.gain = (1.0 - a / max(b, 1e-12) for b, a in excess)
+    trial.seen_share, trial.gain = (before.share_taken(after, role) for role in ROLES)
     was, now = (
         np.maximum(weights @ left.validate - 1.0, 0.0).mean(axis=1) for left in (before, after)
     )
