@@ -18,7 +18,7 @@ from sms.io import (
     write_table,
     write_text_atomically,
 )
-from sms.io.declarations import LEAST_SHARE
+from sms.io.declarations import least_uncertainty
 from sms.io.write import write_bytes_atomically
 from sms.parameters import PARAMETERS
 
@@ -147,14 +147,15 @@ def test_random_values_of_every_parameter_survive(tmp_path: Path) -> None:
     for name, update in updates.items():
         assert written.declared(name).value == pytest.approx(update.value, rel=1e-11), name
         widest = PARAMETERS[name].upper - PARAMETERS[name].lower
-        expected = max(min(update.uncertainty, widest), (1.0 + 1e-9) * LEAST_SHARE * widest)
+        least = (1.0 + 1e-9) * least_uncertainty(PARAMETERS[name])
+        expected = max(min(update.uncertainty, widest), least)
         assert written.declared(name).uncertainty == pytest.approx(expected, rel=1e-11), name
 
 
 def test_a_standard_error_narrower_than_what_is_read_is_written_as_that(tmp_path: Path) -> None:
     """And none as none: the value is known exactly."""
     name, original = "supply_line_turbulence", write_rig(tmp_path)
-    least = LEAST_SHARE * (PARAMETERS[name].upper - PARAMETERS[name].lower)
+    least = least_uncertainty(PARAMETERS[name])
     for error, written in ((0.5 * least, least), (2.0 * least, 2.0 * least), (0.0, 0.0)):
         write_extended_rig(original, tmp_path / "e.toml", {name: Declaration(1e9, error)}, "")
         declared = load_rig(tmp_path / "e.toml").declared(name)

@@ -96,6 +96,11 @@ def _of_tables(tables: Mapping[str, Any], path: Path) -> dict[str, Declaration]:
     }
 
 
+def least_uncertainty(parameter: Parameter) -> float:
+    """The least half width that is read but for 0, which is that of a value known exactly."""
+    return LEAST_SHARE * (parameter.upper - parameter.lower)
+
+
 def declaration(
     name: str,
     table: ParameterTable,
@@ -123,7 +128,7 @@ def declaration(
                 f"{parameter.lower:g} to {parameter.upper:g}{unit_after(parameter)}; write fit = true where nothing is "
                 "known"
             )
-        if 0.0 < uncertainty < LEAST_SHARE * (parameter.upper - parameter.lower):
+        if 0.0 < uncertainty < least_uncertainty(parameter):
             raise InputError(
                 f"{where}: an uncertainty of {table.uncertainty} is beyond what can be calculated with; write 0 where "
                 "the value is known exactly"

@@ -21,7 +21,7 @@ from tomlkit.items import InlineTable
 
 from sms.errors import InputError, did_you_mean
 from sms.io.data_files import files_in
-from sms.io.declarations import LEAST_SHARE, Declaration, check_bounds
+from sms.io.declarations import Declaration, check_bounds, least_uncertainty
 from sms.io.rig import interpret
 from sms.io.schema import parse_rig_text, read_rig_text
 from sms.io.signals import column_name
@@ -173,10 +173,10 @@ def _set_parameter(table: Any, parameter: Parameter, declaration: Declaration, w
             unit = split_quantity(_plain(entry[key]), parameter.unit, where)[1]
             break
     # A standard error may be wider than the range, which says as much as a half width, or narrower than what is read.
-    widest = parameter.upper - parameter.lower
-    half_width = min(declaration.uncertainty, widest)
+    half_width = min(declaration.uncertainty, parameter.upper - parameter.lower)
     if half_width > 0.0:
-        half_width = max(half_width, (1.0 + 1e-9) * LEAST_SHARE * widest)
+        rounding = 1.0 + 1e-9
+        half_width = max(half_width, rounding * least_uncertainty(parameter))
     new: dict[str, object] = {
         "value": _written(from_si(declaration.value, unit, parameter.unit, where)),
         "uncertainty": _written(interval_from_si(half_width, unit, parameter.unit, where)),
